@@ -1,0 +1,24 @@
+#pragma once
+// Meshfree elasticity in time: one tick = Work::substeps leapfrog steps (docs/physics.md section 2).
+
+#include "calot/deformation/work.h"
+
+namespace calot::deformation {
+
+/// Advances displacement and velocity by one tick under elastic, hourglass, gravity and contact forces. Reads
+/// Exchange::near and ::contacts, writes Exchange::contact_force_N. Leaves Work::gradient current. Sets State::status
+/// when a displacement is no longer finite.
+void integrate(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
+
+/// Recomputes rest properties of one phyxel (moment, volume, mass, hourglass, Lamé constants) from its links and
+/// Work::occupancy.
+void refresh_phyxel(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t phyxel);
+
+/// Recomputes gradient and moment stress of all phyxels from displacements.
+void update_gradients(const tissue::Model& model, const tissue::State& state, Work& work);
+
+/// Elastic + hourglass energy [J] and kinetic energy [J].
+double elastic_energy_J(const tissue::Model& model, const tissue::State& state, const Work& work);
+double kinetic_energy_J(const tissue::Model& model, const tissue::State& state, const Work& work);
+
+}  // namespace calot::deformation

@@ -1,0 +1,38 @@
+#pragma once
+// Scratch of the deformation room: all of it can be rebuilt from Model and State (make_work does), bit for bit.
+
+#include <array>
+#include <cstdint>
+
+#include "calot/base/array.h"
+#include "calot/tissue/exchange.h"
+#include "calot/tissue/state.h"
+
+namespace calot::deformation {
+
+/// [phyxels.cells] each. Cells without a phyxel hold zeros. Ghosts have moments, volume and gradients like all others.
+struct Work {
+    // Rest properties, recomputed for a phyxel whenever its hexels or links change (refresh_phyxel)
+    Array<std::uint64_t> occupancy;                 ///< surviving hexels of the main component; bit x + m (y + m z), local coordinates
+    std::array<Array<float>, 6> moment_inverse;     ///< A^-1 [1/m^2], symmetric: xx xy xz yy yz zz; zero = no own stress
+    Array<float> volume_m3;                         ///< v, effective (scaled down when poorly linked)
+    Array<float> inverse_mass_per_kg;               ///< 0 = absent or ghost
+    Array<float> hourglass;                         ///< kappa
+    Array<float> lame_mu_Pa, lame_lambda_Pa;        ///< volume averages over surviving hexels
+
+    // Always current: belongs to State::displacement_m at the end of integrate() and after sever_burnt_links()
+    std::array<Array<float>, 9> gradient;           ///< G, row-major: gradient[3 r + c] = du_r / dX_c
+    std::array<Array<float>, 9> moment_stress;      ///< M = v P A^-1 - kappa G, row-major
+
+    // Contact forces by the transpose of the embedding, per substep
+    std::array<Array<float>, 3> contact_force_N;
+    std::array<Array<float>, 9> contact_moment;     ///< added to M
+
+    int substeps = 1;
+    float substep_s = 1e-3f;
+};
+
+/// Reserves and computes everything from model and state.
+Work make_work(const tissue::Model& model, const tissue::State& state);
+
+}  // namespace calot::deformation

@@ -1,0 +1,53 @@
+#pragma once
+// The tissue's surface: a volume field at hexel centres and marching cubes, redone near what burnt (docs/physics.md
+// section 7). The field lives in rest space; vertices are moved by deformation::embed_points.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "calot/surface/mesh.h"
+#include "calot/tissue/exchange.h"
+#include "calot/tissue/state.h"
+
+namespace calot::surface {
+
+/// The surface at rest. Vertices and triangles are compact arrays (no holes) whose order is a function of State alone,
+/// whatever the order of updates that led there.
+class Surface {
+  public:
+    explicit Surface(const tissue::Model& model);
+    ~Surface();
+    Surface(Surface&&) noexcept;
+    Surface& operator=(Surface&&) noexcept;
+
+    /// Rebuilds everything from State::hexel_present.
+    void rebuild(const tissue::Model& model, const tissue::State& state);
+    /// Redoes the blocks near Exchange::removed_hexels. No allocation beyond the reserve made at set-up.
+    void update_dirty_blocks(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange);
+
+    /// Rest mesh. Gathered from the blocks when something changed since the last call.
+    const Mesh& rest_mesh() const;
+    /// For every vertex of rest_mesh(): a hexel nearby (present), for attributes and for the side of a cut it is on.
+    const std::vector<std::int64_t>& owner() const;
+    /// Counts up whenever rest_mesh() changed.
+    std::uint64_t version() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Closed and manifold: every edge belongs to exactly two triangles, in opposite directions.
+struct MeshCheck {
+    bool closed = false;
+    std::int64_t open_edges = 0;
+    std::int64_t nonmanifold_edges = 0;
+    std::int64_t degenerate_triangles = 0;
+};
+MeshCheck check(const Mesh& mesh);
+
+/// Signed volume enclosed [m^3].
+double volume_m3(const Mesh& mesh);
+
+}  // namespace calot::surface

@@ -1,0 +1,81 @@
+#pragma once
+// Exchange: what physics rooms hand to one another within a tick. Rooms do not include each other; they meet here and
+// in State. Scratch: never saved, rebuilt every tick. All vectors are reserved at set-up and never grow inside a step.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "calot/base/array.h"
+#include "calot/base/vec.h"
+#include "calot/tissue/model.h"
+
+namespace calot::tissue {
+
+/// A rounded cylinder in world space, a piece of an instrument.
+struct Capsule {
+    Vec3 a_m{0.0};
+    Vec3 b_m{0.0};
+    double radius_m = 0.0;
+    bool bare = false;  ///< metal without insulation: carries current, gets hot
+    Vec3 velocity_a_m_per_s{0.0};
+    Vec3 velocity_b_m_per_s{0.0};
+};
+
+/// A surface hexel close to an instrument, with its place in world space.
+struct NearHexel {
+    std::int64_t hexel = 0;     ///< cell
+    Vec3f rest_m{0.0f};
+    Vec3f world_m{0.0f};
+    float bare_gap_m = 1e9f;    ///< distance from its surface to the nearest bare metal; <= 0 touches
+};
+
+/// A one-sided constraint at a near hexel, linearised at the start of the tick and enforced in every substep.
+struct Contact {
+    std::int32_t near = 0;             ///< index into Exchange::near
+    Vec3f normal{0.0f};                ///< unit, out of the instrument
+    float gap_m = 0.0f;                ///< at the start of the tick, negative = penetration
+    Vec3f tool_velocity_m_per_s{0.0f}; ///< of the instrument's surface there
+};
+
+/// Mass that left a hexel as steam or smoke during this tick.
+struct GasEvent {
+    std::int64_t hexel = 0;
+    float steam_kg = 0.0f;
+    float smoke_kg = 0.0f;
+    float temperature_K = 373.15f;
+};
+
+/// Joule heat in a box of hexels, from the last electric solve. Empty (size 0) when no current flows.
+struct JouleHeat {
+    Int3 low{0};                       ///< hexel coordinates of the box's low corner
+    Int3 size{0};                      ///< x fastest in `density`
+    Array<float> density_W_per_m3;     ///< [size.x * size.y * size.z], scaled to the present power
+    double total_W = 0.0;              ///< sum of density * hexel volume
+};
+
+struct Exchange {
+    // simulation/instruments -> all: the hook in world space, this tick
+    std::vector<Capsule> capsules;
+
+    // deformation (embedding) -> instruments, electric
+    std::vector<NearHexel> near;
+
+    // instruments -> deformation
+    std::vector<Contact> contacts;
+    // deformation -> simulation: force of the tissue on the hook [N] and its moment about the hook's position [N m], mean over substeps
+    Vec3 contact_force_N{0.0};
+    // instruments -> simulation: force of rigid organs on the hook [N]
+    Vec3 organ_force_N{0.0};
+
+    // electric -> thermal
+    JouleHeat joule;
+
+    // thermal -> deformation, surface, effects: this tick
+    std::vector<std::int64_t> removed_hexels;  ///< burnt by thermal, then crumbs appended by deformation
+    std::vector<GasEvent> gas;
+    // deformation -> surface: rest boxes are enough; phyxels whose links changed this tick
+    std::vector<std::int64_t> changed_phyxels;
+};
+
+}  // namespace calot::tissue

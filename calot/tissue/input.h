@@ -1,0 +1,24 @@
+#pragma once
+// What the surgeon's hands and feet say, once a tick. A run is a pure function of scene and inputs.
+
+#include "calot/base/vec.h"
+
+namespace calot::tissue {
+
+enum class GeneratorMode : std::uint8_t { cut, blend, coag };
+
+/// Pose of an instrument: its reference point (the middle of the hook's foot) and its frame. In the instrument's frame
+/// the shaft runs along -z (from the tip towards the trocar) and the hook's foot along +x.
+struct Pose {
+    Vec3 position_m{0.0};
+    Quat orientation{1.0, 0.0, 0.0, 0.0};
+};
+
+struct Input {
+    Pose hook;
+    bool pedal = false;
+    GeneratorMode mode = GeneratorMode::cut;
+    double power_setting_W = 0.0;
+};
+
+}  // namespace calot::tissue

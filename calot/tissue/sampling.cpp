@@ -1,0 +1,162 @@
+#include "calot/tissue/sampling.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calot/base/error.h"
+#include "calot/base/parallel.h"
+
+namespace calot::tissue {
+
+namespace {
+
+/// Lattices whose cells cover the bounds of all tissues inside the field.
+Box sampled_box(const anatomy::Anatomy& anatomy) {
+    Box box{Vec3(1e9), Vec3(-1e9)};
+    for (const auto& tissue : anatomy.tissues) {
+        const Box bounds = tissue.shape->bounds_m();
+        box.low = glm::min(box.low, glm::max(bounds.low, anatomy.field.low));
+        box.high = glm::max(box.high, glm::min(bounds.high, anatomy.field.high));
+    }
+    return box;
+}
+
+/// Wave speed of longitudinal waves [m/s], squared: (lambda + 2 mu) / rho.
+double wave_speed_squared(double mu, double lambda, double density) { return (lambda + 2.0 * mu) / density; }
+
+}  // namespace
+
+Model sample(const anatomy::Anatomy& anatomy, const SamplingParameters& parameters, std::vector<Material> materials) {
+    const int m = parameters.hexels_per_edge;
+    if (m != 1 && m != 2 && m != 4)
+        throw InputError("hexels_per_edge is " + std::to_string(m), "use 1, 2 or 4 hexels along the edge of a phyxel's cell");
+    std::vector<MaterialIndex> material_of;
+    for (const auto& tissue : anatomy.tissues) {
+        material_of.push_back(find_material(materials, tissue.material));
+        if (material_of.back() == kNoMaterial)
+            throw InputError("tissue '" + tissue.name + "' has the unknown material '" + tissue.material + "'");
+    }
+
+    Model model;
+    model.materials = std::move(materials);
+    model.hexels_per_edge = m;
+    for (const auto& organ : anatomy.organs) {
+        model.organs.push_back({organ.name, find_material(model.materials, organ.material), organ.holds_tissue, organ.shape});
+    }
+
+    const double hexel = parameters.hexel_spacing_m;
+    const double spacing = m * hexel;
+    const Box box = sampled_box(anatomy);
+    if (!(box.low.x < box.high.x && box.low.y < box.high.y && box.low.z < box.high.z))
+        throw InputError("no tissue lies inside the operating field");
+    // One ring of empty phyxel cells on each side for ghosts.
+    const Int3 cells = Int3(glm::ceil((box.high - box.low) / spacing - 1e-9)) + 2;
+    const Vec3 corner = 0.5 * (box.low + box.high) - 0.5 * spacing * Vec3(cells);
+    model.phyxels = Lattice::make(corner + Vec3(0.5 * spacing), spacing, cells);
+    model.hexels = Lattice::make(corner + Vec3(0.5 * hexel), hexel, cells * m);
+
+    model.hexel_material.assign(static_cast<std::size_t>(model.hexels.cells), kNoMaterial);
+    model.hexel_initial = BitArray(model.hexels.cells);
+    model.hexel_held = BitArray(model.hexels.cells);
+    model.phyxel_initial = BitArray(model.phyxels.cells);
+    model.phyxel_ghost = BitArray(model.phyxels.cells);
+    model.phyxel_mass_scale.assign(static_cast<std::size_t>(model.phyxels.cells), 1.0f);
+
+    // Hexels: bytes first (bits of neighbouring rows share words, so they are set afterwards, by one thread).
+    constexpr MaterialIndex kHeld = 255;
+    Array<MaterialIndex>& mark = model.hexel_material;
+    const Int3 size = model.hexels.size;
+    parallel_for("tissue.sample", 0, size.z, 1, [&](std::int64_t z_low, std::int64_t z_high) {
+        for (int z = static_cast<int>(z_low); z < z_high; ++z)
+            for (int y = 0; y < size.y; ++y)
+                for (int x = 0; x < size.x; ++x) {
+                    const Vec3 p = model.hexels.centre_m(Int3(x, y, z));
+                    MaterialIndex found = kNoMaterial;
+                    const bool in_field = glm::all(glm::greaterThanEqual(p, anatomy.field.low)) &&
+                                          glm::all(glm::lessThanEqual(p, anatomy.field.high));
+                    if (in_field)
+                        for (std::size_t k = anatomy.tissues.size(); k-- > 0 && found == kNoMaterial;)
+                            if (anatomy.tissues[k].shape->distance_m(p) < 0.0) found = material_of[k];
+                    if (found == kNoMaterial)
+                        for (const auto& organ : model.organs)
+                            if (organ.holds_tissue && organ.shape->distance_m(p) < 0.0) {
+                                found = kHeld;
+                                break;
+                            }
+                    mark[static_cast<std::size_t>(model.hexels.index(x, y, z))] = found;
+                }
+    });
+    std::vector<int> held_in_phyxel(static_cast<std::size_t>(model.phyxels.cells), 0);
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const std::int64_t cell = model.hexels.index(x, y, z);
+                const std::int64_t phyxel = model.phyxel_of({x, y, z});
+                MaterialIndex& found = mark[static_cast<std::size_t>(cell)];
+                if (found == kHeld) {
+                    model.hexel_held.set(cell);
+                    ++held_in_phyxel[static_cast<std::size_t>(phyxel)];
+                    found = kNoMaterial;
+                } else if (found != kNoMaterial) {
+                    model.hexel_initial.set(cell);
+                    model.phyxel_initial.set(phyxel);
+                }
+            }
+    if (model.hexel_initial.count() == 0)
+        throw InputError("no hexel lies inside any tissue", "the tissue is thinner than the hexel spacing, or outside the field");
+
+    // Ghosts: empty cells mostly inside a holding organ, next to tissue.
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
+        if (model.phyxel_initial.test(p) || 2 * held_in_phyxel[static_cast<std::size_t>(p)] < model.hexels_per_phyxel()) continue;
+        bool beside_tissue = false;
+        for (int dz = -1; dz <= 1; ++dz)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx)
+                    if (std::abs(dx) + std::abs(dy) + std::abs(dz) <= 2)
+                        beside_tissue |= model.phyxel_initial.test(p + model.phyxels.offset({dx, dy, dz}));
+        if (beside_tissue) model.phyxel_ghost.set(p);
+    }
+    prepare_time_step(model);
+    return model;
+}
+
+void prepare_time_step(Model& model) {
+    struct Average {
+        double mu = 0.0, lambda = 0.0, density = 0.0;
+        int hexels = 0;
+    };
+    std::vector<Average> average(static_cast<std::size_t>(model.phyxels.cells));
+    double softest = 1e300;
+    for (std::int64_t h = model.hexels.first; h < model.hexels.last; ++h) {
+        const MaterialIndex index = model.hexel_material[static_cast<std::size_t>(h)];
+        if (index == kNoMaterial) continue;
+        const Material& material = model.materials[index];
+        const double mu = material.youngs_modulus_Pa / (2.0 * (1.0 + material.poisson_ratio));
+        const double lambda = 2.0 * mu * material.poisson_ratio / (1.0 - 2.0 * material.poisson_ratio);
+        softest = std::min(softest, wave_speed_squared(mu, lambda, material.density_kg_per_m3));
+        Average& a = average[static_cast<std::size_t>(model.phyxel_of(model.hexels.coordinates(h)))];
+        a.mu += mu;
+        a.lambda += lambda;
+        a.density += material.density_kg_per_m3;
+        ++a.hexels;
+    }
+    DeformationParameters& d = model.deformation;
+    const double spacing = model.phyxels.spacing_m;
+    if (d.substeps == 0) {
+        const double longest = d.time_step_safety * spacing / std::sqrt(softest);
+        d.substeps = std::max(1, static_cast<int>(std::ceil(model.tick_s / longest - 1e-9)));
+    }
+    const double dt = model.tick_s / d.substeps;
+    const double allowed = std::pow(d.time_step_safety * spacing / dt, 2.0);  // (lambda + 2 mu) / rho must stay below
+    model.added_mass_kg = 0.0;
+    for (std::size_t p = 0; p < average.size(); ++p) {
+        const Average& a = average[p];
+        if (a.hexels == 0) continue;
+        const double scale = std::max(1.0, wave_speed_squared(a.mu, a.lambda, a.density) / allowed);
+        model.phyxel_mass_scale[p] = static_cast<float>(scale);
+        model.added_mass_kg += (scale - 1.0) * a.density * model.hexel_volume_m3();
+    }
+}
+
+}  // namespace calot::tissue

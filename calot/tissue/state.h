@@ -1,0 +1,98 @@
+#pragma once
+// State: everything that is saved, hashed, compared and replayed. What can be computed from it and the Model
+// (moment matrices, temperatures, surface) lives in the rooms' own work structures.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "calot/base/array.h"
+#include "calot/base/vec.h"
+#include "calot/tissue/model.h"
+
+namespace calot::tissue {
+
+/// The nine positive directions of the 18 links (faces, then edges). The link between cells c and c + d is bit
+/// index(c) of State::links[direction]; the negative nine are the same bits seen from the other end.
+inline constexpr std::array<Int3, 9> kLinkDirections{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1},
+                                                      {1, 1, 0}, {1, -1, 0}, {1, 0, 1},
+                                                      {1, 0, -1}, {0, 1, 1}, {0, 1, -1}}};
+inline constexpr int kFaceDirections = 3;  ///< the first three are faces, the other six edges
+
+/// Where the energy went since the start [J].
+struct EnergyBudget {
+    double delivered = 0.0;  ///< by the generator, into the window of the field
+    double outflow = 0.0;    ///< dissipated beyond the window
+    double gas = 0.0;        ///< carried off by steam and gasified solids: sensible and latent
+    double latent = 0.0;     ///< of `gas`, the latent part
+    double surface = 0.0;    ///< to gas and held tissue by convection
+    double perfusion = 0.0;  ///< to blood
+    double debris = 0.0;     ///< left with crumbs that fell
+    // stored (sum of enthalpy) is computed when asked for; the imbalance is
+    // delivered - outflow - gas - surface - perfusion - debris - stored.
+};
+
+/// What the generator and the hook are doing.
+struct GeneratorState {
+    double voltage_V = 0.0;     ///< RMS
+    double current_A = 0.0;     ///< RMS
+    double power_W = 0.0;       ///< into tissue
+    double impedance_Ohm = 0.0; ///< 0 = open circuit
+};
+
+/// Numerical trouble stops a run in order.
+struct Status {
+    bool ok = true;
+    const char* field = ""; ///< which
+    std::int64_t cell = -1;  ///< where
+    std::int64_t tick = -1;  ///< when
+};
+
+struct State {
+    std::int64_t tick = 0;
+
+    // --- Phyxels [phyxels.cells], written by deformation
+    std::array<Array<float>, 3> displacement_m;      ///< u
+    std::array<Array<float>, 3> velocity_m_per_s;
+    std::array<BitArray, 9> links;                   ///< live links; see kLinkDirections
+    BitArray phyxel_present;                         ///< has a main component and is simulated (ghosts not included)
+
+    // --- Hexels [hexels.cells], written by thermal (and by deformation when crumbs fall)
+    BitArray hexel_present;
+    Array<float> enthalpy_J_per_m3;                  ///< H, counted from body temperature
+    Array<float> water_kg_per_m3;                    ///< water left
+    Array<float> peak_temperature_K;                 ///< hottest so far: drives blanching, browning, char
+    Array<float> damage;                             ///< Omega, Arrhenius integral; saturates at 1e6
+
+    // --- Electric field, written by electric: warm start of the next solve
+    Int3 field_low{0};                               ///< hexel coordinates of the window's low corner
+    Array<float> potential;                          ///< [window_cells^3] in units of the electrode's voltage
+
+    GeneratorState generator;
+    EnergyBudget energy_J;
+    std::int64_t hexels_burnt = 0;                   ///< gasified
+    std::int64_t hexels_fallen = 0;                  ///< in crumbs that came loose
+    std::int64_t links_severed = 0;
+    Vec3 hook_force_N{0.0};                          ///< reaction of tissue and organs on the hook, mean over the tick
+    Status status;
+
+    /// A fresh state: undeformed, at body temperature, all links alive.
+    static State make(const Model& model);
+};
+
+/// A named piece of the state, for hashing, saving and comparing.
+struct Field {
+    const char* name;
+    void* data;
+    std::size_t bytes;
+};
+
+/// All fields in a fixed order. The names are those of the recordings and of what `replay --verify` reports.
+std::vector<Field> fields(State& state);
+
+/// Hash over all fields in order.
+std::uint64_t hash(const State& state);
+/// Hash of every field, in the order of fields().
+std::vector<std::uint64_t> hash_fields(const State& state);
+
+}  // namespace calot::tissue

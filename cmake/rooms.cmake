@@ -1,0 +1,34 @@
+# One library target per room, so that the build enforces which room may include which (docs/architecture.md).
+
+add_library(calot_flags INTERFACE)
+# -Wno-restrict: g++ 12 sees overlaps in std::string + std::string that are not there.
+# -ffp-contract=off: the compiler may not fuse multiply and add behind our back, so that results do not depend on its mood.
+target_compile_options(calot_flags INTERFACE -Wall -Wextra -Wconversion -Wno-sign-conversion -Wno-restrict -Werror -ffp-contract=off -fno-math-errno)
+if(CALOT_SANITIZE)
+    target_compile_options(calot_flags INTERFACE -fsanitize=${CALOT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_link_options(calot_flags INTERFACE -fsanitize=${CALOT_SANITIZE})
+endif()
+find_program(CALOT_CCACHE ccache)
+if(CALOT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CALOT_CCACHE})
+endif()
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    set(CMAKE_CXX_FLAGS_RELEASE "-O3")  # asserts stay on: a broken invariant must be heard
+endif()
+
+# calot_room(NAME [NEEDS rooms...] [USES libraries...])
+# NEEDS are rooms below this one, passed on to whoever uses this room; USES are outside libraries.
+function(calot_room name)
+    cmake_parse_arguments(ROOM "" "" "NEEDS;USES" ${ARGN})
+    file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/calot/${name}/*.cpp)
+    list(TRANSFORM ROOM_NEEDS PREPEND calot_)
+    if(sources)
+        add_library(calot_${name} STATIC ${sources})
+        target_include_directories(calot_${name} PUBLIC ${CMAKE_SOURCE_DIR})
+        target_link_libraries(calot_${name} PUBLIC ${ROOM_NEEDS} ${ROOM_USES} PRIVATE calot_flags)
+    else()
+        add_library(calot_${name} INTERFACE)
+        target_include_directories(calot_${name} INTERFACE ${CMAKE_SOURCE_DIR})
+        target_link_libraries(calot_${name} INTERFACE ${ROOM_NEEDS} ${ROOM_USES})
+    endif()
+endfunction()
