@@ -1,6 +1,8 @@
 #pragma once
 // What the surgeon's hands and feet say, once a tick. A run is a pure function of scene and inputs.
 
+#include <cstdint>
+
 #include "calot/base/vec.h"
 
 namespace calot::tissue {

@@ -80,6 +80,7 @@ std::vector<Field> fields(State& s) {
     all.push_back(scalar_field("hexels_fallen", s.hexels_fallen));
     all.push_back(scalar_field("links_severed", s.links_severed));
     all.push_back(scalar_field("hook_force", s.hook_force_N));
+    all.push_back(scalar_field("hook_pose", s.hook));
     return all;
 }
 

@@ -8,6 +8,7 @@
 
 #include "calot/base/array.h"
 #include "calot/base/vec.h"
+#include "calot/tissue/input.h"
 #include "calot/tissue/model.h"
 
 namespace calot::tissue {
@@ -74,6 +75,7 @@ struct State {
     std::int64_t hexels_fallen = 0;                  ///< in crumbs that came loose
     std::int64_t links_severed = 0;
     Vec3 hook_force_N{0.0};                          ///< reaction of tissue and organs on the hook, mean over the tick
+    Pose hook;                                       ///< of the last tick: its change is the instrument's velocity
     Status status;
 
     /// A fresh state: undeformed, at body temperature, all links alive.
