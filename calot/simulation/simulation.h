@@ -1,0 +1,51 @@
+#pragma once
+// A running simulation: what programs hold. Setup in, ticks, state and surface out.
+//
+//     auto setup = std::make_shared<simulation::Setup>(scene::build(scene::load("scenes/block.toml")));
+//     simulation::Simulation run(setup);
+//     while (run.time_s() < setup->duration_s) run.tick(setup->script.at(run.time_s()));
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calot/simulation/setup.h"
+#include "calot/simulation/step.h"
+
+namespace calot::simulation {
+
+/// The tissue's surface in the world at this moment.
+struct WorldSurface {
+    std::vector<Vec3f> position_m;
+    std::vector<Mat3f> deformation_gradient;  ///< turns rest normals by its inverse transpose
+};
+
+class Simulation {
+  public:
+    explicit Simulation(std::shared_ptr<const Setup> setup);
+
+    /// One step of Model::tick_s. Returns false, and does nothing more, once State::status is not ok.
+    bool tick(const tissue::Input& input);
+
+    double time_s() const { return static_cast<double>(state_.tick) * setup_->model.tick_s; }
+    const Setup& setup() const { return *setup_; }
+    const tissue::Model& model() const { return setup_->model; }
+    const tissue::State& state() const { return state_; }
+    const Work& work() const { return work_; }
+    const surface::Surface& surface() const { return work_.surface; }
+    const std::vector<tissue::Capsule>& capsules() const { return work_.exchange.capsules; }
+
+    /// World positions and deformation gradients of Surface::rest_mesh()'s vertices.
+    void world_surface(WorldSurface& out) const;
+
+    /// delivered - (outflow + gas + surface + perfusion + debris + stored), as a fraction of delivered (0 when none).
+    double energy_imbalance() const;
+
+  private:
+    std::shared_ptr<const Setup> setup_;
+    tissue::State state_;
+    Work work_;
+};
+
+}  // namespace calot::simulation
