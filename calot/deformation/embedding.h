@@ -1,6 +1,8 @@
 #pragma once
 // Displacement anywhere from phyxels: u(X) = sum_j phi_j (u_j + G_j (X - X_j)) (docs/physics.md section 3).
 
+#include <array>
+#include <cstdint>
 #include <span>
 
 #include "calot/deformation/work.h"
@@ -19,8 +21,17 @@ void embed_points(const tissue::Model& model, const tissue::State& state, const 
 /// than the capacity reserved: the nearest cells in order are kept and the rest ignored.
 void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work, double reach_m);
 
-/// Spreads a force at an embedded point to phyxels by the transpose of the embedding: adds to Work::contact_force_N and
-/// ::contact_moment. Linear and angular momentum balance exactly.
-void spread_force(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t hexel, const Vec3f& rest_m, const Vec3f& force_N);
+/// The phyxels that carry a material point and their weights phi_j >= 0. Weights sum to 1; count 0: nothing carries it.
+struct Stencil {
+    static constexpr int kCapacity = 32;
+    int count = 0;
+    std::array<std::int64_t, kCapacity> phyxel{};
+    std::array<float, kCapacity> weight{};
+};
+
+/// The stencil that embed_points uses for a point; it depends on rest geometry and links only. Contact forces go the
+/// same way back (contact.h): integrate() asks for it once a tick and contact point.
+Stencil embedding_stencil(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t owner_hexel,
+                          const Vec3f& rest_m);
 
 }  // namespace calot::deformation

@@ -24,10 +24,6 @@ struct Work {
     std::array<Array<float>, 9> gradient;           ///< G, row-major: gradient[3 r + c] = du_r / dX_c
     std::array<Array<float>, 9> moment_stress;      ///< M = v P A^-1 - kappa G, row-major
 
-    // Contact forces by the transpose of the embedding, per substep
-    std::array<Array<float>, 3> contact_force_N;
-    std::array<Array<float>, 9> contact_moment;     ///< added to M
-
     int substeps = 1;
     float substep_s = 1e-3f;
 };
