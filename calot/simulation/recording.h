@@ -23,11 +23,11 @@ struct HashRecord {
 
 struct Recording {
     std::string program_version;
-    std::string scene_text;                 ///< Setup::scene_text
-    std::vector<std::string> field_names;   ///< of the hashes
-    std::vector<tissue::Input> inputs;      ///< input of tick k
+    std::string scene_text;                ///< Setup::scene_text
+    std::vector<std::string> field_names;  ///< of the hashes
+    std::vector<tissue::Input> inputs;     ///< input of tick k
     std::vector<HashRecord> hashes;
-    bool complete = false;                  ///< ended in order, not cut off
+    bool complete = false;  ///< ended in order, not cut off
 };
 
 /// Throws InputError naming the file and the byte when it is not a recording or damaged before its first input; a

@@ -20,9 +20,9 @@ struct CameraSetup {
 };
 
 struct Setup {
-    std::string name;              ///< of the scene, for people
-    std::string scene_text;        ///< canonical, self-contained scene: builds this very Setup again
-    std::uint64_t seed = 1;        ///< of the patient
+    std::string name;        ///< of the scene, for people
+    std::string scene_text;  ///< canonical, self-contained scene: builds this very Setup again
+    std::uint64_t seed = 1;  ///< of the patient
     double duration_s = 10.0;
     anatomy::Anatomy anatomy;
     tissue::Model model;

@@ -32,9 +32,9 @@ struct Work {
     thermal::Work thermal;
     surface::Surface surface;
     effects::Smoke smoke;
-    std::vector<Vec3f> gas_rest_m, gas_world_m;   ///< places of Exchange::gas
+    std::vector<Vec3f> gas_rest_m, gas_world_m;  ///< places of Exchange::gas
     std::vector<std::int64_t> gas_owner;
-    std::array<float, kStages> stage_us{};        ///< wall time of the last tick's stages
+    std::array<float, kStages> stage_us{};  ///< wall time of the last tick's stages
 
     Work(const tissue::Model& model, const tissue::State& state, const instruments::HookShape& hook,
          const effects::SmokeParameters& smoke);

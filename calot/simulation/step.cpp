@@ -1,0 +1,87 @@
+#include "calot/simulation/step.h"
+
+#include <chrono>
+
+#include "calot/deformation/embedding.h"
+#include "calot/deformation/integrate.h"
+#include "calot/deformation/topology.h"
+#include "calot/instruments/contact.h"
+
+namespace calot::simulation {
+
+namespace {
+
+/// Hexels this close to the hook are embedded and offered to contact and current.
+constexpr double kReach_m = 2e-3;
+
+/// Wall time of each stage. It is shown to people and never flows back into the state.
+class StageClock {
+  public:
+    explicit StageClock(std::array<float, kStages>& stage_us) : stage_us_(stage_us), last_(Clock::now()) {}
+    void lap(Stage stage) {
+        const auto now = Clock::now();
+        stage_us_[static_cast<std::size_t>(stage)] = std::chrono::duration<float, std::micro>(now - last_).count();
+        last_ = now;
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    std::array<float, kStages>& stage_us_;
+    Clock::time_point last_;
+};
+
+/// Where this tick's gas came from, in the world: smoke starts there.
+void place_gas(const tissue::Model& model, const tissue::State& state, Work& work) {
+    work.gas_rest_m.clear();
+    work.gas_owner.clear();
+    for (const tissue::GasEvent& event : work.exchange.gas) {
+        work.gas_rest_m.push_back(Vec3f(model.hexels.centre_m(event.hexel)));
+        work.gas_owner.push_back(event.hexel);
+    }
+    work.gas_world_m.resize(work.gas_rest_m.size());
+    deformation::embed_points(model, state, work.deformation, work.gas_rest_m, work.gas_owner, work.gas_world_m);
+}
+
+}  // namespace
+
+void step(const tissue::Model& model, tissue::State& state, Work& work, const tissue::Input& input) {
+    tissue::Exchange& exchange = work.exchange;
+    StageClock clock(work.stage_us);
+    exchange.removed_hexels.clear();
+    exchange.changed_phyxels.clear();
+    exchange.gas.clear();
+
+    instruments::place_hook(work.hook, input.hook, state.tick == 0 ? input.hook : state.hook, model.tick_s,
+                            exchange.capsules);
+    deformation::find_near(model, state, exchange, work.deformation, kReach_m);
+    instruments::find_contacts(model, state, exchange);
+    clock.lap(Stage::contact);
+
+    deformation::integrate(model, state, exchange, work.deformation);
+    state.hook_force_N = exchange.contact_force_N + exchange.organ_force_N;
+    clock.lap(Stage::deformation);
+
+    electric::solve_potential(model, state, exchange, input, *work.electric);
+    clock.lap(Stage::electric);
+
+    thermal::conduct(model, state, exchange, work.thermal);
+    clock.lap(Stage::heat);
+
+    thermal::remove_vaporised(model, state, exchange, work.thermal);
+    place_gas(model, state, work);  // while the phyxels that carried it are still there
+    clock.lap(Stage::removal);
+
+    deformation::sever_burnt_links(model, state, exchange, work.deformation);
+    clock.lap(Stage::topology);
+
+    work.surface.update_dirty_blocks(model, state, exchange);
+    clock.lap(Stage::surface);
+
+    work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s);
+    clock.lap(Stage::smoke);
+
+    state.hook = input.hook;
+    ++state.tick;
+}
+
+}  // namespace calot::simulation
