@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <utility>
 
 namespace calot {
 
@@ -34,15 +35,16 @@ Lattice Lattice::make(const Vec3& origin_m, double spacing_m, const Int3& size) 
 }
 
 Int3 Lattice::coordinates(std::int64_t index) const {
-    std::array<int, 3> axes{0, 1, 2};
-    std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return stride[a] < stride[b]; });
-    auto rest = static_cast<std::int64_t>(index - first);
+    // The fast axis has stride 1. No general sort: this is called inside steps.
+    const int fast = stride.x == 1 ? 0 : stride.y == 1 ? 1 : 2;
+    int middle = (fast + 1) % 3, slow = (fast + 2) % 3;
+    if (stride[middle] > stride[slow]) std::swap(middle, slow);
+    const std::int64_t rest = index - first;
+    const std::int64_t in_plane = rest % stride[slow];
     Int3 c{0};
-    for (int k = 2; k >= 0; --k) {
-        const int axis = axes[static_cast<std::size_t>(k)];
-        c[axis] = static_cast<int>(rest / stride[axis]);
-        rest %= stride[axis];
-    }
+    c[slow] = static_cast<int>(rest / stride[slow]);
+    c[middle] = static_cast<int>(in_plane / stride[middle]);
+    c[fast] = static_cast<int>(in_plane % stride[middle]);
     return c;
 }
 

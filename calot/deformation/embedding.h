@@ -1,5 +1,9 @@
 #pragma once
 // Displacement anywhere from phyxels: u(X) = sum_j phi_j (u_j + G_j (X - X_j)) (docs/physics.md section 3).
+//
+// phi_j are Shepard weights w_j / sum w, w = (1 - r^2 / R^2)^3 within R = 1.3 s, over the owner's phyxel and those of
+// the 3^3 cells about it that live links reach: face and edge neighbours by their own link, corners by two links. Exact
+// on linear displacements wherever the G_j are, since every term then is. Ghosts take part with u = 0 and their own G.
 
 #include <array>
 #include <cstdint>
@@ -9,17 +13,21 @@
 
 namespace calot::deformation {
 
+inline constexpr double kEmbeddingRadius = 1.3;  ///< R, in phyxel spacings: cells two away lie beyond it
+
 /// World positions of material points given at rest. `owner` is for each point a hexel cell near it whose phyxel
 /// decides which side of a cut it is on: weights never cross severed links. Optionally also the deformation gradients
-/// F = I + sum phi_j G_j there (empty span = not wanted), to turn normals by F^-T. Parallel, deterministic.
+/// F = I + sum phi_j G_j there (empty span = not wanted), to turn normals by F^-T. A point whose owner's phyxel is gone
+/// stays at rest. Parallel, deterministic. Fastest when points of the same phyxel follow one another.
 void embed_points(const tissue::Model& model, const tissue::State& state, const Work& work,
                   std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner, std::span<Vec3f> world_m,
                   std::span<Mat3f> deformation_gradient = {});
 
-/// Fills Exchange::near with the surface hexels (present, with an absent face neighbour) whose world position lies
-/// within `reach_m` of any capsule in Exchange::capsules, in the order of their cells, and their bare_gap_m. Never more
-/// than the capacity reserved: the nearest cells in order are kept and the rest ignored.
-void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work, double reach_m);
+/// Fills Exchange::near with the surface hexels (present, with a face neighbour that is neither present nor held) whose
+/// world position lies within `reach_m` of any capsule in Exchange::capsules, in the order of their cells. Never more
+/// than the capacity reserved (reserve_exchange): beyond it the nearest are kept.
+void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
+               double reach_m);
 
 /// The phyxels that carry a material point and their weights phi_j >= 0. Weights sum to 1; count 0: nothing carries it.
 struct Stencil {
@@ -31,7 +39,12 @@ struct Stencil {
 
 /// The stencil that embed_points uses for a point; it depends on rest geometry and links only. Contact forces go the
 /// same way back (contact.h): integrate() asks for it once a tick and contact point.
-Stencil embedding_stencil(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t owner_hexel,
-                          const Vec3f& rest_m);
+Stencil embedding_stencil(const tissue::Model& model, const tissue::State& state, const Work& work,
+                          std::int64_t owner_hexel, const Vec3f& rest_m);
+
+/// Scalar reference of embed_points: each point from its own stencil.
+void embed_points_reference(const tissue::Model& model, const tissue::State& state, const Work& work,
+                            std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner,
+                            std::span<Vec3f> world_m, std::span<Mat3f> deformation_gradient = {});
 
 }  // namespace calot::deformation

@@ -24,18 +24,20 @@ struct Capsule {
 
 /// A surface hexel close to an instrument, with its place in world space.
 struct NearHexel {
-    std::int64_t hexel = 0;     ///< cell
+    std::int64_t hexel = 0;  ///< cell
     Vec3f rest_m{0.0f};
     Vec3f world_m{0.0f};
-    float bare_gap_m = 1e9f;    ///< distance from its surface to the nearest bare metal; <= 0 touches
+    float bare_gap_m = 1e9f;  ///< distance from its surface to the nearest bare metal; <= 0 touches
+    float distance_m = 1e9f;  ///< from its centre to the surface of the nearest capsule, negative inside
+    Vec3f outward{0.0f};      ///< unit, away from the tissue (estimated from absent neighbours); 0 where they balance
 };
 
 /// A one-sided constraint at a near hexel, linearised at the start of the tick and enforced in every substep.
 struct Contact {
-    std::int32_t near = 0;             ///< index into Exchange::near
-    Vec3f normal{0.0f};                ///< unit, out of the instrument
-    float gap_m = 0.0f;                ///< at the start of the tick, negative = penetration
-    Vec3f tool_velocity_m_per_s{0.0f}; ///< of the instrument's surface there
+    std::int32_t near = 0;              ///< index into Exchange::near
+    Vec3f normal{0.0f};                 ///< unit, out of the instrument
+    float gap_m = 0.0f;                 ///< at the start of the tick, negative = penetration
+    Vec3f tool_velocity_m_per_s{0.0f};  ///< of the instrument's surface there
 };
 
 /// Mass that left a hexel as steam or smoke during this tick.
@@ -48,10 +50,10 @@ struct GasEvent {
 
 /// Joule heat in a box of hexels, from the last electric solve. Empty (size 0) when no current flows.
 struct JouleHeat {
-    Int3 low{0};                       ///< hexel coordinates of the box's low corner
-    Int3 size{0};                      ///< x fastest in `density`
-    Array<float> density_W_per_m3;     ///< [size.x * size.y * size.z], scaled to the present power
-    double total_W = 0.0;              ///< sum of density * hexel volume
+    Int3 low{0};                    ///< hexel coordinates of the box's low corner
+    Int3 size{0};                   ///< x fastest in `density`
+    Array<float> density_W_per_m3;  ///< [size.x * size.y * size.z], scaled to the present power
+    double total_W = 0.0;           ///< sum of density * hexel volume
 };
 
 struct Exchange {
@@ -63,7 +65,8 @@ struct Exchange {
 
     // instruments -> deformation
     std::vector<Contact> contacts;
-    // deformation -> simulation: force of the tissue on the hook [N] and its moment about the hook's position [N m], mean over substeps
+    // deformation -> simulation: force of the tissue on the hook [N] and its moment about the hook's position [N m],
+    // mean over substeps
     Vec3 contact_force_N{0.0};
     // instruments -> simulation: force of rigid organs on the hook [N]
     Vec3 organ_force_N{0.0};
@@ -77,5 +80,10 @@ struct Exchange {
     // deformation -> surface: rest boxes are enough; phyxels whose links changed this tick
     std::vector<std::int64_t> changed_phyxels;
 };
+
+/// Reserves every vector for the most that a tick can bring, so that nothing grows inside a step. Removed hexels and
+/// changed phyxels are bounded by what exists. Of near hexels, the nearest kNearCapacity are kept.
+void reserve_exchange(const Model& model, Exchange& exchange);
+inline constexpr std::int64_t kNearCapacity = 4096;
 
 }  // namespace calot::tissue

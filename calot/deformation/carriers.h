@@ -1,0 +1,121 @@
+#pragma once
+// What carries material points of one phyxel's cell: the phyxel itself and the cells about it that its links reach.
+// Used by embedding and by the search for near hexels.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "calot/deformation/embedding.h"
+#include "calot/deformation/neighbours.h"
+#include "calot/deformation/work.h"
+
+namespace calot::deformation {
+
+/// The shape of Shepard's weights: (1 - r^2 / R^2)^3, r in phyxel spacings.
+inline float embedding_kernel(float r_squared) {
+    constexpr auto kInverse = static_cast<float>(1.0 / (kEmbeddingRadius * kEmbeddingRadius));
+    const float t = 1.0f - r_squared * kInverse;
+    return t > 0.0f ? t * t * t : 0.0f;
+}
+
+struct Carriers {
+    int count = 0;                                 ///< 0: the phyxel is not there
+    std::array<std::int8_t, kNeighbourhood> cell;  ///< index in the neighbourhood; the phyxel itself comes first
+    std::array<std::int64_t, kNeighbourhood> phyxel;
+};
+
+inline Carriers find_carriers(const tissue::Model& model, const tissue::State& state, std::int64_t phyxel) {
+    Carriers carriers;
+    if (phyxel < model.phyxels.first || phyxel >= model.phyxels.last || !state.phyxel_present.test(phyxel))
+        return carriers;
+    const auto& links = neighbour_links();
+    std::array<bool, kNeighbourhood> reached{};
+    auto add = [&](int k, std::int64_t cell) {
+        carriers.cell[static_cast<std::size_t>(carriers.count)] = static_cast<std::int8_t>(k);
+        carriers.phyxel[static_cast<std::size_t>(carriers.count++)] = cell;
+        reached[static_cast<std::size_t>(k)] = true;
+    };
+    add(kNeighbourhoodCentre, phyxel);
+    for (int k = 0; k < kNeighbourhood; ++k) {
+        const NeighbourLink& link = links[static_cast<std::size_t>(k)];
+        if (link.direction < 0) continue;
+        const std::int64_t offset = model.phyxels.offset(link.step);
+        if (link_lives(state, phyxel, offset, link)) add(k, phyxel + offset);
+    }
+    // A corner, in two links: by a face and an edge neighbour, or by an edge and a face neighbour.
+    for (int k = 0; k < kNeighbourhood; ++k) {
+        const Int3 corner = links[static_cast<std::size_t>(k)].step;
+        if (corner.x * corner.y * corner.z == 0) continue;
+        for (int axis = 0; axis < 3 && !reached[static_cast<std::size_t>(k)]; ++axis) {
+            Int3 face(0), edge = corner;
+            face[axis] = corner[axis];
+            edge[axis] = 0;
+            for (const Int3& via : {face, edge}) {
+                if (reached[static_cast<std::size_t>(k)] || !reached[static_cast<std::size_t>(neighbour_index(via))])
+                    continue;
+                const NeighbourLink& onward = links[static_cast<std::size_t>(neighbour_index(corner - via))];
+                const std::int64_t middle = phyxel + model.phyxels.offset(via);
+                if (connected(model, state, middle, model.phyxels.offset(onward.step), onward))
+                    add(k, phyxel + model.phyxels.offset(corner));
+            }
+        }
+    }
+    return carriers;
+}
+
+/// The displacement fields u_j + G_j (X - X_j) of the carriers, each written as a + G r with r = X - X_owner [m].
+struct CarrierFields {
+    static constexpr int kComponents = 12;  ///< a (3), G (9, row-major)
+    alignas(64) std::array<std::array<float, kComponents>, kNeighbourhood> field;
+
+    void gather(const tissue::Model& model, const tissue::State& state, const Work& work, const Carriers& carriers) {
+        const auto spacing = static_cast<float>(model.phyxels.spacing_m);
+        const auto& links = neighbour_links();
+        for (int n = 0; n < carriers.count; ++n) {
+            const auto phyxel = static_cast<std::size_t>(carriers.phyxel[static_cast<std::size_t>(n)]);
+            const Vec3f d =
+                spacing * Vec3f(links[static_cast<std::size_t>(carriers.cell[static_cast<std::size_t>(n)])].step);
+            auto& f = field[static_cast<std::size_t>(n)];
+            for (std::size_t row = 0; row < 3; ++row) {
+                const float gx = work.gradient[3 * row][phyxel], gy = work.gradient[3 * row + 1][phyxel],
+                            gz = work.gradient[3 * row + 2][phyxel];
+                f[row] = state.displacement_m[row][phyxel] - (gx * d.x + gy * d.y + gz * d.z);
+                f[3 + 3 * row] = gx;
+                f[4 + 3 * row] = gy;
+                f[5 + 3 * row] = gz;
+            }
+        }
+    }
+};
+
+/// sum_n weight[n] field[n] / sum_n weight[n]. The first carrier alone where all weights vanish.
+inline std::array<float, CarrierFields::kComponents> blend(const CarrierFields& fields, int count,
+                                                           const float* weight) {
+    std::array<float, CarrierFields::kComponents> sum{};
+    float total = 0.0f;
+    for (int n = 0; n < count; ++n) {
+        const float w = weight[n];
+        if (w == 0.0f) continue;
+        total += w;
+        const auto& field = fields.field[static_cast<std::size_t>(n)];
+        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += w * field[c];
+    }
+    if (total <= 0.0f) return fields.field[0];
+    const float inverse = 1.0f / total;
+    for (float& value : sum) value *= inverse;
+    return sum;
+}
+
+/// Displacement a + G r.
+inline Vec3f displacement_at(const std::array<float, CarrierFields::kComponents>& f, const Vec3f& r) {
+    return Vec3f(f[0] + (f[3] * r.x + f[4] * r.y + f[5] * r.z), f[1] + (f[6] * r.x + f[7] * r.y + f[8] * r.z),
+                 f[2] + (f[9] * r.x + f[10] * r.y + f[11] * r.z));
+}
+
+/// F = I + G, column-major.
+inline Mat3f deformation_gradient_of(const std::array<float, CarrierFields::kComponents>& f) {
+    return Mat3f(1.0f + f[3], f[6], f[9], f[4], 1.0f + f[7], f[10], f[5], f[8], 1.0f + f[11]);
+}
+
+}  // namespace calot::deformation

@@ -1,0 +1,115 @@
+#include "calot/deformation/embedding.h"
+
+#include <cassert>
+
+#include "calot/base/parallel.h"
+#include "calot/deformation/carriers.h"
+
+namespace calot::deformation {
+
+namespace {
+
+constexpr std::int64_t kPointsPerChunk = 512;
+
+/// A point's place relative to the centre of its owner's phyxel, in spacings.
+Vec3f relative_to(const tissue::Model& model, const Vec3f& rest_m, const Vec3f& centre_m) {
+    return (rest_m - centre_m) * static_cast<float>(1.0 / model.phyxels.spacing_m);
+}
+
+void raw_weights(const Carriers& carriers, const Vec3f& r, std::array<float, kNeighbourhood>& weight) {
+    const auto& links = neighbour_links();
+    for (int n = 0; n < carriers.count; ++n) {
+        const Vec3f d = r - Vec3f(links[static_cast<std::size_t>(carriers.cell[static_cast<std::size_t>(n)])].step);
+        weight[static_cast<std::size_t>(n)] = embedding_kernel(glm::dot(d, d));
+    }
+}
+
+}  // namespace
+
+Stencil embedding_stencil(const tissue::Model& model, const tissue::State& state, const Work&, std::int64_t owner_hexel,
+                          const Vec3f& rest_m) {
+    const std::int64_t owner = model.phyxel_of(model.hexels.coordinates(owner_hexel));
+    const Carriers carriers = find_carriers(model, state, owner);
+    Stencil stencil;
+    if (carriers.count == 0) return stencil;
+    std::array<float, kNeighbourhood> weight;
+    raw_weights(carriers, relative_to(model, rest_m, Vec3f(model.phyxels.centre_m(owner))), weight);
+    float total = 0.0f;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) {
+        if (weight[n] == 0.0f) continue;
+        total += weight[n];
+        stencil.phyxel[static_cast<std::size_t>(stencil.count)] = carriers.phyxel[n];
+        stencil.weight[static_cast<std::size_t>(stencil.count++)] = weight[n];
+    }
+    if (stencil.count == 0) {  // far outside the owner's cell: it alone carries the point
+        stencil.phyxel[0] = owner;
+        stencil.weight[0] = total = 1.0f;
+        stencil.count = 1;
+    }
+    for (std::size_t n = 0; n < static_cast<std::size_t>(stencil.count); ++n) stencil.weight[n] /= total;
+    return stencil;
+}
+
+// Points of one phyxel share its carriers and their fields, which are gathered once for a run of such points.
+void embed_points(const tissue::Model& model, const tissue::State& state, const Work& work,
+                  std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner, std::span<Vec3f> world_m,
+                  std::span<Mat3f> deformation_gradient) {
+    assert(owner.size() == rest_m.size() && world_m.size() == rest_m.size());
+    assert(deformation_gradient.empty() || deformation_gradient.size() == rest_m.size());
+    parallel_for("deformation.embed", 0, static_cast<std::int64_t>(rest_m.size()), kPointsPerChunk,
+                 [&](std::int64_t low, std::int64_t high) {
+                     std::int64_t current = -1, current_hexel = -1;
+                     Carriers carriers;
+                     CarrierFields fields;
+                     Vec3f centre_m(0.0f);
+                     std::array<float, kNeighbourhood> weight;
+                     for (auto p = static_cast<std::size_t>(low); p < static_cast<std::size_t>(high); ++p) {
+                         if (owner[p] != current_hexel) {
+                             current_hexel = owner[p];
+                             const std::int64_t phyxel = model.phyxel_of(model.hexels.coordinates(current_hexel));
+                             if (phyxel != current) {
+                                 current = phyxel;
+                                 centre_m = Vec3f(model.phyxels.centre_m(phyxel));
+                                 carriers = find_carriers(model, state, phyxel);
+                                 fields.gather(model, state, work, carriers);
+                             }
+                         }
+                         if (carriers.count == 0) {
+                             world_m[p] = rest_m[p];
+                             if (!deformation_gradient.empty()) deformation_gradient[p] = Mat3f(1.0f);
+                             continue;
+                         }
+                         raw_weights(carriers, relative_to(model, rest_m[p], centre_m), weight);
+                         const auto f = blend(fields, carriers.count, weight.data());
+                         world_m[p] = rest_m[p] + displacement_at(f, rest_m[p] - centre_m);
+                         if (!deformation_gradient.empty()) deformation_gradient[p] = deformation_gradient_of(f);
+                     }
+                 });
+}
+
+void embed_points_reference(const tissue::Model& model, const tissue::State& state, const Work& work,
+                            std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner,
+                            std::span<Vec3f> world_m, std::span<Mat3f> deformation_gradient) {
+    for (std::size_t p = 0; p < rest_m.size(); ++p) {
+        const Stencil stencil = embedding_stencil(model, state, work, owner[p], rest_m[p]);
+        Vec3f u(0.0f);
+        Mat3f F(1.0f);
+        for (std::size_t n = 0; n < static_cast<std::size_t>(stencil.count); ++n) {
+            const auto j = static_cast<std::size_t>(stencil.phyxel[n]);
+            const Vec3f r = rest_m[p] - Vec3f(model.phyxels.centre_m(stencil.phyxel[n]));
+            for (int row = 0; row < 3; ++row) {
+                float value = state.displacement_m[static_cast<std::size_t>(row)][j];
+                for (int column = 0; column < 3; ++column) {
+                    const float g = work.gradient[static_cast<std::size_t>(3 * row + column)][j];
+                    value += g * r[column];
+                    F[column][row] += stencil.weight[n] * g;
+                }
+                u[row] += stencil.weight[n] * value;
+            }
+        }
+        world_m[p] = rest_m[p] + u;
+        if (!deformation_gradient.empty()) deformation_gradient[p] = F;
+    }
+}
+
+}  // namespace calot::deformation

@@ -1,0 +1,190 @@
+// The surface hexels near the instrument, in the world.
+//
+// Phyxels first: those whose moved centre lies near a capsule. Then their surface hexels, by words: a hexel is inside
+// where all six shifted neighbours are filled. The centres of hexels sit at the same m^3 places in every cell, so
+// their kernel values are a table (Work::hexel_weight), and only which carriers live differs.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calot/deformation/carriers.h"
+#include "calot/deformation/embedding.h"
+#include "calot/deformation/occupancy.h"
+
+namespace calot::deformation {
+
+namespace {
+
+/// Beyond the reach, how far from a capsule a phyxel's centre may be and still own a hexel within reach, in spacings:
+/// half a cell's diagonal is 0.87, stretched by up to 1.7.
+constexpr double kPhyxelMargin = 1.5;
+
+struct CapsuleF {
+    Vec3f a, ab;
+    float inverse_length2, radius;
+    bool bare;
+};
+
+float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
+    const Vec3f ap = p - capsule.a;
+    const float t = std::clamp(glm::dot(ap, capsule.ab) * capsule.inverse_length2, 0.0f, 1.0f);
+    return glm::length(ap - t * capsule.ab) - capsule.radius;
+}
+
+/// Capsules in single precision, with the box about all of them. At most 16: more than any instrument has.
+struct Capsules {
+    std::array<CapsuleF, 16> item;
+    std::size_t count = 0;
+    Vec3f low{1e9f}, high{-1e9f};
+
+    Capsules(const std::vector<tissue::Capsule>& capsules, double margin_m) {
+        for (const tissue::Capsule& c : capsules) {
+            if (count == item.size()) break;
+            const Vec3f a(c.a_m), b(c.b_m), ab = b - a;
+            const float length2 = glm::dot(ab, ab);
+            item[count++] = {a, ab, length2 > 0.0f ? 1.0f / length2 : 0.0f, static_cast<float>(c.radius_m), c.bare};
+            const Vec3f margin(static_cast<float>(c.radius_m + margin_m));
+            low = glm::min(low, glm::min(a, b) - margin);
+            high = glm::max(high, glm::max(a, b) + margin);
+        }
+    }
+    bool box_holds(const Vec3f& p) const {
+        return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
+    }
+    float distance(const Vec3f& p) const {
+        float nearest = 1e9f;
+        for (std::size_t k = 0; k < count; ++k) nearest = std::min(nearest, distance_to_surface(item[k], p));
+        return nearest;
+    }
+    float bare_distance(const Vec3f& p) const {
+        float nearest = 1e9f;
+        for (std::size_t k = 0; k < count; ++k)
+            if (item[k].bare) nearest = std::min(nearest, distance_to_surface(item[k], p));
+        return nearest;
+    }
+};
+
+/// For each of the six directions (axis, up or down), the hexels of a phyxel whose neighbour there is absent.
+struct Openings {
+    std::array<std::uint64_t, 6> open;
+    std::uint64_t surface = 0;
+};
+
+Openings find_openings(const tissue::Model& model, const Work& work, const OccupancyShifts& shifts,
+                       std::int64_t phyxel) {
+    auto filled = [&](std::int64_t p) {
+        return work.occupancy[static_cast<std::size_t>(p)] | work.held[static_cast<std::size_t>(p)];
+    };
+    const std::uint64_t own = work.occupancy[static_cast<std::size_t>(phyxel)], here = filled(phyxel);
+    Openings openings;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::int64_t step = model.phyxels.stride[static_cast<int>(axis)];
+        const std::uint64_t above = shifts.down(here, axis) | shifts.low_as_high(filled(phyxel + step), axis);
+        const std::uint64_t below = shifts.up(here, axis) | shifts.high_as_low(filled(phyxel - step), axis);
+        openings.open[2 * axis] = own & ~above;
+        openings.open[2 * axis + 1] = own & ~below;
+        openings.surface |= openings.open[2 * axis] | openings.open[2 * axis + 1];
+    }
+    return openings;
+}
+
+/// Away from the tissue at rest: towards the absent neighbours. 0 where they balance.
+Vec3f rest_outward(const Openings& openings, int bit) {
+    Vec3f outward(0.0f);
+    for (int axis = 0; axis < 3; ++axis)
+        outward[axis] = static_cast<float>((openings.open[static_cast<std::size_t>(2 * axis)] >> bit) & 1u) -
+                        static_cast<float>((openings.open[static_cast<std::size_t>(2 * axis + 1)] >> bit) & 1u);
+    return outward;
+}
+
+/// A rest normal turned into the world by cof F = J F^-T, normalised.
+Vec3f turn_normal(const Mat3f& F, const Vec3f& n) {
+    const Vec3f turned = glm::cross(F[1], F[2]) * n.x + glm::cross(F[2], F[0]) * n.y + glm::cross(F[0], F[1]) * n.z;
+    const float length = glm::length(turned);
+    return length > 0.0f ? turned / length : Vec3f(0.0f);
+}
+
+/// Order of the heap that keeps the nearest: furthest on top, of equals the later cell.
+bool nearer(const tissue::NearHexel& a, const tissue::NearHexel& b) {
+    return a.distance_m != b.distance_m ? a.distance_m < b.distance_m : a.hexel < b.hexel;
+}
+
+void keep(std::vector<tissue::NearHexel>& near, const tissue::NearHexel& item) {
+    constexpr auto kCapacity = static_cast<std::size_t>(tissue::kNearCapacity);
+    if (near.size() < kCapacity) {
+        near.push_back(item);
+        if (near.size() == kCapacity) std::make_heap(near.begin(), near.end(), nearer);
+        return;
+    }
+    if (!nearer(item, near.front())) return;
+    std::pop_heap(near.begin(), near.end(), nearer);
+    near.back() = item;
+    std::push_heap(near.begin(), near.end(), nearer);
+}
+
+/// Embeds the surface hexels of one phyxel and keeps those within reach.
+void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
+                const OccupancyShifts& shifts, const Capsules& capsules, std::int64_t phyxel, const Int3& c,
+                float reach_m) {
+    const Openings openings = find_openings(model, work, shifts, phyxel);
+    if (openings.surface == 0) return;
+    const Carriers carriers = find_carriers(model, state, phyxel);
+    if (carriers.count == 0) return;
+    CarrierFields fields;
+    fields.gather(model, state, work, carriers);
+    const Vec3f centre_m(model.phyxels.centre_m(c));
+    const auto half_hexel = static_cast<float>(0.5 * model.hexels.spacing_m);
+    for (std::uint64_t rest = openings.surface; rest != 0; rest &= rest - 1) {
+        const int bit = __builtin_ctzll(rest);
+        const float* table = work.hexel_weight.data() + kNeighbourhood * bit;
+        std::array<float, kNeighbourhood> weight;
+        for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) weight[n] = table[carriers.cell[n]];
+        const auto f = blend(fields, carriers.count, weight.data());
+        const Int3 cell = c * shifts.m + hexel_of_bit(shifts.m, bit);
+        tissue::NearHexel item;
+        item.rest_m = Vec3f(model.hexels.centre_m(cell));
+        item.world_m = item.rest_m + displacement_at(f, item.rest_m - centre_m);
+        if (!capsules.box_holds(item.world_m)) continue;
+        item.distance_m = capsules.distance(item.world_m);
+        if (item.distance_m > reach_m) continue;
+        item.hexel = model.hexels.index(cell);
+        item.bare_gap_m = capsules.bare_distance(item.world_m) - half_hexel;
+        item.outward = turn_normal(deformation_gradient_of(f), rest_outward(openings, bit));
+        keep(exchange.near, item);
+    }
+}
+
+}  // namespace
+
+void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
+               double reach_m) {
+    exchange.near.clear();
+    if (exchange.capsules.empty()) return;
+    const OccupancyShifts shifts(model.hexels_per_edge);
+    const double phyxel_reach_m = reach_m + kPhyxelMargin * model.phyxels.spacing_m;
+    const Capsules capsules(exchange.capsules, phyxel_reach_m);
+    const Int3 size = model.phyxels.size;
+    const Vec3f origin_m(model.phyxels.origin_m);
+    const auto spacing_m = static_cast<float>(model.phyxels.spacing_m);
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y) {
+            const std::int64_t row = model.phyxels.index(0, y, z);
+            for (int x = 0; x < size.x; ++x) {
+                const std::int64_t phyxel = row + std::int64_t{x} * model.phyxels.stride.x;
+                if (!state.phyxel_present.test(phyxel)) continue;
+                const auto p = static_cast<std::size_t>(phyxel);
+                const Vec3f world_m =
+                    origin_m + spacing_m * Vec3f(Int3(x, y, z)) +
+                    Vec3f(state.displacement_m[0][p], state.displacement_m[1][p], state.displacement_m[2][p]);
+                if (!capsules.box_holds(world_m) || capsules.distance(world_m) > static_cast<float>(phyxel_reach_m))
+                    continue;
+                add_hexels(model, state, exchange, work, shifts, capsules, phyxel, {x, y, z},
+                           static_cast<float>(reach_m));
+            }
+        }
+    std::sort(exchange.near.begin(), exchange.near.end(),
+              [](const tissue::NearHexel& a, const tissue::NearHexel& b) { return a.hexel < b.hexel; });
+}
+
+}  // namespace calot::deformation
