@@ -10,8 +10,8 @@ namespace calot::surface {
 
 struct Mesh {
     std::vector<Vec3f> position_m;
-    std::vector<Vec3f> normal;          ///< unit
-    std::vector<std::uint32_t> index;   ///< three a triangle, counter-clockwise seen from outside
+    std::vector<Vec3f> normal;         ///< unit
+    std::vector<std::uint32_t> index;  ///< three a triangle, counter-clockwise seen from outside
 
     std::size_t triangles() const { return index.size() / 3; }
 };

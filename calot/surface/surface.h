@@ -30,6 +30,9 @@ class Surface {
     const Mesh& rest_mesh() const;
     /// For every vertex of rest_mesh(): a hexel nearby (present), for attributes and for the side of a cut it is on.
     const std::vector<std::int64_t>& owner() const;
+    /// rest_mesh() smoothed for drawing (smoothing.h): same triangles and owners. Worked out when something changed
+    /// since the last call.
+    const Mesh& smooth_mesh() const;
     /// Counts up whenever rest_mesh() changed.
     std::uint64_t version() const;
 

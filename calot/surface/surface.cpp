@@ -1,0 +1,292 @@
+#include "calot/surface/surface.h"
+
+#include <algorithm>
+#include <bitset>
+#include <cassert>
+
+#include "calot/base/parallel.h"
+#include "calot/surface/block_grid.h"
+#include "calot/surface/pool.h"
+#include "calot/surface/smoothing.h"
+
+namespace calot::surface {
+
+namespace {
+
+// What is to be redone in a block.
+constexpr std::uint8_t kVertices = 1;   ///< its edges are cut anew, or the field at an end of them changed
+constexpr std::uint8_t kTriangles = 2;  ///< its cubes changed, or the places of the vertices that they refer to
+
+/// Arrays that grow with a pool, never shrink.
+template <class T>
+void grow(std::vector<T>& array, std::size_t size) {
+    if (array.size() < size) array.resize(size);
+}
+
+}  // namespace
+
+struct Surface::Impl {
+    BlockGrid grid;
+    Vec3 origin_m;  ///< of point (0, 0, 0) along the inner axes
+    double spacing_m;
+
+    Pool vertex_pool, triangle_pool;
+    std::vector<Range> vertex_range, triangle_range;  ///< per block
+    std::vector<Vec3f> position_m, normal;            ///< by vertex_range
+    std::vector<std::int64_t> owner;
+    std::vector<std::uint16_t> corner;  ///< three a triangle, by triangle_range; CornerCode
+
+    std::vector<std::uint8_t> redo;         ///< per block
+    std::vector<std::int32_t> redo_blocks;  ///< those with redo != 0
+
+    std::uint64_t version = 0;
+    // Gathered when asked for
+    bool gathered = false, smoothed = false;
+    Mesh mesh, smooth;
+    std::vector<std::int64_t> mesh_owner;
+    std::vector<std::uint32_t> first_vertex;  ///< per block
+    SmoothingWork smoothing;
+
+    explicit Impl(const tissue::Model& model);
+    void rebuild();
+    void mark(const Int3& low, const Int3& high, std::uint8_t what);
+    void redo_marked();
+    void fit_ranges(std::int64_t block);
+    void write_vertices(std::int64_t block);
+    void gather();
+};
+
+Surface::Impl::Impl(const tissue::Model& model) : grid(model.hexels), spacing_m(model.hexels.spacing_m) {
+    for (int k = 0; k < 3; ++k) origin_m[k] = model.hexels.origin_m[grid.axis(k)] - spacing_m;
+    const auto blocks = static_cast<std::size_t>(grid.count());
+    vertex_range.resize(blocks);
+    triangle_range.resize(blocks);
+    redo.assign(blocks, 0);
+    redo_blocks.reserve(blocks);
+    first_vertex.resize(blocks);
+}
+
+void Surface::Impl::rebuild() {
+    const std::int64_t blocks = grid.count();
+    parallel_for("surface.edges", 0, blocks, 16, [&](std::int64_t low, std::int64_t high) {
+        for (std::int64_t block = low; block < high; ++block) grid.find_edges(block);
+    });
+    vertex_pool.clear(static_cast<std::size_t>(blocks));
+    triangle_pool.clear(static_cast<std::size_t>(blocks));
+    std::fill(vertex_range.begin(), vertex_range.end(), Range{});
+    std::fill(triangle_range.begin(), triangle_range.end(), Range{});
+    for (std::int64_t block = 0; block < blocks; ++block) fit_ranges(block);
+    // Room for burning: three times the surface of the start, and some for small ones.
+    const std::size_t vertices = 4 * std::size_t{vertex_pool.end()} + 8192,
+                      triangles = 4 * std::size_t{triangle_pool.end()} + 16384;
+    grow(position_m, vertices);
+    grow(normal, vertices);
+    grow(owner, vertices);
+    grow(corner, 3 * triangles);
+    parallel_for("surface.rebuild", 0, blocks, 4, [&](std::int64_t low, std::int64_t high) {
+        for (std::int64_t block = low; block < high; ++block) {
+            write_vertices(block);
+            if (grid.edges(block).triangles > 0)
+                grid.write_triangles(block,
+                                     &corner[3 * std::size_t{triangle_range[static_cast<std::size_t>(block)].offset}]);
+        }
+    });
+    ++version;
+    gathered = false;
+}
+
+void Surface::Impl::fit_ranges(std::int64_t block) {
+    vertex_pool.fit(vertex_range[static_cast<std::size_t>(block)], grid.edges(block).vertices);
+    triangle_pool.fit(triangle_range[static_cast<std::size_t>(block)], grid.edges(block).triangles);
+}
+
+/// Marks the blocks that own points of a box.
+void Surface::Impl::mark(const Int3& low, const Int3& high, std::uint8_t what) {
+    const Int3 first = glm::max(low, Int3(0)) / kBlock, last = glm::min(high / kBlock, grid.blocks() - 1);
+    for (int z = first.z; z <= last.z; ++z)
+        for (int y = first.y; y <= last.y; ++y)
+            for (int x = first.x; x <= last.x; ++x) {
+                const std::int64_t block = grid.block_at({x, y, z});
+                std::uint8_t& marks = redo[static_cast<std::size_t>(block)];
+                if (marks == 0) redo_blocks.push_back(static_cast<std::int32_t>(block));
+                marks |= what;
+            }
+}
+
+void Surface::Impl::redo_marked() {
+    for (const std::int32_t block : redo_blocks)
+        if (redo[static_cast<std::size_t>(block)] & kTriangles) {
+            grid.find_edges(block);
+            fit_ranges(block);
+        }
+    grow(position_m, vertex_pool.end());
+    grow(normal, vertex_pool.end());
+    grow(owner, vertex_pool.end());
+    grow(corner, 3 * std::size_t{triangle_pool.end()});
+    parallel_for("surface.redo", 0, static_cast<std::int64_t>(redo_blocks.size()), 2,
+                 [&](std::int64_t low, std::int64_t high) {
+                     for (std::int64_t k = low; k < high; ++k) {
+                         const auto block = static_cast<std::size_t>(redo_blocks[static_cast<std::size_t>(k)]);
+                         if (redo[block] & kVertices) write_vertices(static_cast<std::int64_t>(block));
+                         if (redo[block] & kTriangles)
+                             grid.write_triangles(static_cast<std::int64_t>(block),
+                                                  corner.data() + 3 * std::size_t{triangle_range[block].offset});
+                     }
+                 });
+    for (const std::int32_t block : redo_blocks) redo[static_cast<std::size_t>(block)] = 0;
+    redo_blocks.clear();
+}
+
+namespace {
+
+/// Field and normal at the points of one block, worked out where the surface needs them.
+class PointValues {
+  public:
+    explicit PointValues(const Window& window) : window_(window) {}
+    struct Value {
+        float v;
+        Vec3f slope;
+    };
+    const Value& at(const Int3& p) {
+        const auto k = static_cast<std::size_t>((p.z * Window::kEdge + p.y) * Window::kEdge + p.x);
+        if (!known_[k]) {
+            const Moments moments = moments_at(window_, p.x, p.y, p.z);
+            values_[k] = {field_value(moments, window_.test(p.x, p.y, p.z)), Vec3f(moments.slope)};
+            known_[k] = true;
+        }
+        return values_[k];
+    }
+
+  private:
+    static constexpr std::size_t kPoints = Window::kEdge * Window::kEdge * Window::kEdge;
+    const Window& window_;
+    std::bitset<kPoints> known_;
+    std::array<Value, kPoints> values_;
+};
+
+}  // namespace
+
+void Surface::Impl::write_vertices(std::int64_t block) {
+    const BlockEdges& edges = grid.edges(block);
+    if (edges.vertices == 0) return;
+    Window window;
+    grid.load(block, window);
+    PointValues values(window);
+    const Int3 low = kBlock * grid.block_coordinates(block);
+    std::size_t vertex = vertex_range[static_cast<std::size_t>(block)].offset;
+    for (int row = 0; row < kBlock * kBlock; ++row)
+        for (std::uint32_t cut = edges.cut[static_cast<std::size_t>(row)]; cut != 0; cut &= cut - 1, ++vertex) {
+            const int bit = __builtin_ctz(cut), axis = bit >> 3;
+            const Int3 p(bit & 7, row & 7, row >> 3);
+            Int3 q = p;
+            ++q[axis];
+            const auto a = values.at(p), b = values.at(q);
+            const float t = a.v / (a.v - b.v);
+            // Out of the tissue; at least not into it, where walls face each other across a gap.
+            Vec3f n = -((1.0f - t) * a.slope + t * b.slope);
+            const float outward = a.v < 0.0f ? 1.0f : -1.0f;
+            n[axis] = outward * std::max(outward * n[axis], 0.0f);
+            const float length = glm::length(n);
+            if (length > 0.0f)
+                n /= length;
+            else
+                n[axis] = outward;
+            Vec3 place = Vec3(low + p);
+            place[axis] += double{t};
+            for (int k = 0; k < 3; ++k) {
+                position_m[vertex][grid.axis(k)] = static_cast<float>(origin_m[k] + spacing_m * place[k]);
+                normal[vertex][grid.axis(k)] = n[k];
+            }
+            owner[vertex] = grid.hexel_of(low + (a.v < 0.0f ? p : q));
+        }
+}
+
+void Surface::Impl::gather() {
+    if (gathered) return;
+    std::uint32_t vertices = 0, triangles = 0;
+    for (std::int64_t block = 0; block < grid.count(); ++block) {
+        first_vertex[static_cast<std::size_t>(block)] = vertices;
+        vertices += grid.edges(block).vertices;
+        triangles += grid.edges(block).triangles;
+    }
+    mesh.position_m.resize(vertices);
+    mesh.normal.resize(vertices);
+    mesh_owner.resize(vertices);
+    mesh.index.resize(3 * std::size_t{triangles});
+    std::uint32_t* index = mesh.index.data();
+    for (std::int64_t block = 0; block < grid.count(); ++block) {
+        const BlockEdges& edges = grid.edges(block);
+        const auto b = static_cast<std::size_t>(block);
+        if (edges.vertices > 0) {
+            const std::size_t from = vertex_range[b].offset, to = first_vertex[b];
+            std::copy_n(&position_m[from], edges.vertices, &mesh.position_m[to]);
+            std::copy_n(&normal[from], edges.vertices, &mesh.normal[to]);
+            std::copy_n(&owner[from], edges.vertices, &mesh_owner[to]);
+        }
+        if (edges.triangles == 0) continue;
+        std::array<std::uint32_t, 8> first{};
+        const Int3 c = grid.block_coordinates(block);
+        for (int k = 0; k < 8; ++k) {
+            const Int3 n = c + Int3(k & 1, (k >> 1) & 1, k >> 2);
+            if (n.x < grid.blocks().x && n.y < grid.blocks().y && n.z < grid.blocks().z)
+                first[static_cast<std::size_t>(k)] = first_vertex[static_cast<std::size_t>(grid.block_at(n))];
+        }
+        const std::uint16_t* code = &corner[3 * std::size_t{triangle_range[b].offset}];
+        for (std::size_t k = 0; k < 3u * edges.triangles; ++k)
+            *index++ = first[static_cast<std::size_t>(CornerCode::owner(code[k]))] +
+                       static_cast<std::uint32_t>(CornerCode::place(code[k]));
+    }
+    gathered = true;
+    smoothed = false;
+}
+
+Surface::Surface(const tissue::Model& model) : impl_(std::make_unique<Impl>(model)) {}
+Surface::~Surface() = default;
+Surface::Surface(Surface&&) noexcept = default;
+Surface& Surface::operator=(Surface&&) noexcept = default;
+
+void Surface::rebuild(const tissue::Model&, const tissue::State& state) {
+    impl_->grid.copy(state.hexel_present);
+    impl_->rebuild();
+}
+
+void Surface::update_dirty_blocks(const tissue::Model&, const tissue::State&, const tissue::Exchange& exchange) {
+    Impl& s = *impl_;
+    for (const std::int64_t hexel : exchange.removed_hexels) {
+        const Int3 p = s.grid.point_of(hexel);
+        if (!s.grid.test(p)) continue;
+        s.grid.clear(p);
+        // Edges that begin in [p - 1, p] are cut anew: places in their blocks change, and with them the triangles of
+        // all blocks that refer there. Vertices with an end of their edge within reach move.
+        s.mark(p - 1 - kBlock, p, kTriangles);
+        s.mark(p - kReach - 1, p + kReach, kVertices);
+    }
+    if (s.redo_blocks.empty()) return;
+    s.redo_marked();
+    ++s.version;
+    s.gathered = false;
+}
+
+const Mesh& Surface::rest_mesh() const {
+    impl_->gather();
+    return impl_->mesh;
+}
+
+const std::vector<std::int64_t>& Surface::owner() const {
+    impl_->gather();
+    return impl_->mesh_owner;
+}
+
+const Mesh& Surface::smooth_mesh() const {
+    impl_->gather();
+    if (!impl_->smoothed)
+        smooth(impl_->mesh, static_cast<float>(impl_->spacing_m), {}, impl_->smooth, impl_->smoothing);
+    impl_->smoothed = true;
+    return impl_->smooth;
+}
+
+std::uint64_t Surface::version() const {
+    return impl_->version;
+}
+
+}  // namespace calot::surface

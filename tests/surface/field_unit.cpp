@@ -1,0 +1,105 @@
+#include "calot/surface/field.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "calot/base/random.h"
+
+namespace calot::surface {
+
+namespace {
+
+Window window_of(const std::function<bool(int, int, int)>& filled) {
+    Window window{};
+    for (int z = -kReach; z < Window::kEdge + kReach; ++z)
+        for (int y = -kReach; y < Window::kEdge + kReach; ++y)
+            for (int x = -kReach; x < Window::kEdge + kReach; ++x)
+                if (filled(x, y, z)) window.row(y, z) |= 1u << (x + kReach);
+    return window;
+}
+
+float value_at(const Window& window, int x, int y, int z) {
+    return field_value(moments_at(window, x, y, z), window.test(x, y, z));
+}
+
+/// Eq. (19) in units of L, with the weights of (17).
+double printed_value(const Window& window, int x, int y, int z) {
+    const Moments m = moments_at_reference(window, x, y, z);
+    return m.weight == 0 ? 2.0 : glm::length(Vec3(m.mean) / double{1.0 * m.weight}) - 0.5;
+}
+
+constexpr int c = 4;  // a point in the middle
+
+}  // namespace
+
+TEST(Field, WeightsAreThoseOfTheKernel) {
+    int sum = 0;
+    for (int dz = -3; dz <= 3; ++dz)
+        for (int dy = -3; dy <= 3; ++dy)
+            for (int dx = -3; dx <= 3; ++dx) {
+                const int d2 = dx * dx + dy * dy + dz * dz;
+                const double w = d2 < 6.25 ? std::pow(1.0 - d2 / 6.25, 3) : 0.0;
+                EXPECT_NEAR(field_weight(d2) / 15625.0, w, 1e-15);
+                EXPECT_NEAR(slope_weight(d2) / 117649.0, d2 < 12.25 ? std::pow(1.0 - d2 / 12.25, 3) : 0.0, 1e-15);
+                sum += field_weight(d2);
+            }
+    EXPECT_EQ(sum, kFullFieldWeight);
+}
+
+TEST(Field, TablesEqualNeighbourByNeighbour) {
+    Random random(7);
+    for (double share : {0.02, 0.5, 0.97}) {
+        const Window window = window_of([&](int, int, int) { return random.uniform() < share; });
+        for (int z = 0; z < Window::kEdge; ++z)
+            for (int y = 0; y < Window::kEdge; ++y)
+                for (int x = 0; x < Window::kEdge; ++x)
+                    ASSERT_EQ(moments_at(window, x, y, z), moments_at_reference(window, x, y, z))
+                        << x << ' ' << y << ' ' << z;
+    }
+}
+
+TEST(Field, IsDistanceFromAFlatSurface) {
+    const Window window = window_of([](int, int, int z) { return z <= c; });
+    // The surface lies half-way between the last hexel and the first gap.
+    const float inside = value_at(window, c, c, c), outside = value_at(window, c, c, c + 1);
+    EXPECT_FLOAT_EQ(inside / (inside - outside), 0.5f);
+    EXPECT_NEAR(inside, -0.5f, 0.02f);
+    // As printed it lies at 0.218 L above the centre.
+    const double printed = printed_value(window, c, c, c), printed_above = printed_value(window, c, c, c + 1);
+    EXPECT_NEAR(printed / (printed - printed_above), 0.218, 0.001);
+}
+
+TEST(Field, KeepsWhatIsThin) {
+    const Window lone = window_of([](int x, int y, int z) { return x == c && y == c && z == c; });
+    EXPECT_FLOAT_EQ(value_at(lone, c, c, c), -0.5f);
+    EXPECT_GT(value_at(lone, c + 1, c, c), 0.4f);
+    const Window sheet = window_of([](int x, int, int) { return x == c; });
+    EXPECT_FLOAT_EQ(value_at(sheet, c, c, c), -0.5f);
+    EXPECT_GT(value_at(sheet, c + 1, c, c), 0.4f);
+    // A gap one hexel wide is the sheet's mirror image; as printed it is closed.
+    const Window gap = window_of([](int x, int, int) { return x != c; });
+    EXPECT_FLOAT_EQ(value_at(gap, c, c, c), 0.5f);
+    EXPECT_LT(printed_value(gap, c, c, c), 0.0);
+    // So is a cluster of 2^3, which as printed has no surface at all.
+    const Window cluster =
+        window_of([](int x, int y, int z) { return x / 2 == c / 2 && y / 2 == c / 2 && z / 2 == c / 2; });
+    EXPECT_LE(value_at(cluster, c, c, c), -kLeastValue);
+    EXPECT_GT(printed_value(cluster, c, c, c), 0.0);
+}
+
+TEST(Field, SignIsPresence) {
+    Random random(11);
+    const Window window = window_of([&](int, int, int) { return random.uniform() < 0.5; });
+    for (int z = 0; z < Window::kEdge; ++z)
+        for (int y = 0; y < Window::kEdge; ++y)
+            for (int x = 0; x < Window::kEdge; ++x) {
+                const float v = value_at(window, x, y, z);
+                EXPECT_EQ(v < 0.0f, window.test(x, y, z));
+                EXPECT_GE(std::abs(v), kLeastValue);
+                EXPECT_LE(std::abs(v), 3.0f);
+            }
+}
+
+}  // namespace calot::surface
