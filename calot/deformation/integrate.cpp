@@ -1,0 +1,140 @@
+#include "calot/deformation/integrate.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "calot/base/parallel.h"
+#include "calot/deformation/kernel.h"
+#include "calot/deformation/law.h"
+#include "calot/deformation/links.h"
+
+namespace calot::deformation {
+
+using tissue::Model;
+using tissue::State;
+
+namespace {
+
+/// Cells of a parallel task: big enough that handing it out costs nothing, and fixed, so that it never depends on
+/// threads.
+constexpr std::int64_t kChunk = 4096;
+static_assert(kChunk % kKernelGrain == 0);
+
+std::int64_t first_bad_cell(const Model& model, const State& state) {
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
+        const auto i = static_cast<std::size_t>(p);
+        for (const auto& u : state.displacement_m)
+            if (!std::isfinite(u[i])) return p;
+    }
+    return -1;
+}
+
+/// Infinities and NaN have all exponent bits set; as integers, so that the loop is wide.
+bool all_finite(const Model& model, const State& state) {
+    constexpr std::uint32_t kExponent = 0x7f800000u;
+    std::uint32_t bad = 0;
+    for (const auto& u : state.displacement_m)
+        for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
+            std::uint32_t bits;
+            std::memcpy(&bits, &u[static_cast<std::size_t>(p)], sizeof(bits));
+            bad |= (bits & kExponent) == kExponent ? 1u : 0u;
+        }
+    return bad == 0;
+}
+
+}  // namespace
+
+KernelView KernelView::make(const Model& model, State& state, Work& work) {
+    KernelView view;
+    for (std::size_t r = 0; r < 3; ++r) {
+        view.displacement_m[r] = state.displacement_m[r].data();
+        view.velocity_m_per_s[r] = state.velocity_m_per_s[r].data();
+        view.gravity_step_m_per_s[r] =
+            static_cast<float>(model.deformation.gravity_m_per_s2[static_cast<int>(r)]) * work.substep_s;
+    }
+    for (std::size_t e = 0; e < 9; ++e) {
+        view.gradient[e] = work.gradient[e].data();
+        view.moment_stress[e] = work.moment_stress[e].data();
+        view.links[e] = state.links[e].bytes();
+        view.offset[e] = model.phyxels.offset(tissue::kLinkDirections[e]);
+    }
+    for (std::size_t e = 0; e < 6; ++e) view.moment_inverse[e] = work.moment_inverse[e].data();
+    view.volume_m3 = work.volume_m3.data();
+    view.inverse_mass_per_kg = work.inverse_mass_per_kg.data();
+    view.hourglass = work.hourglass.data();
+    view.lame_mu_Pa = work.lame_mu_Pa.data();
+    view.lame_lambda_Pa = work.lame_lambda_Pa.data();
+    view.present = state.phyxel_present.bytes();
+    view.ghost = model.phyxel_ghost.bytes();
+    view.law = model.deformation.law;
+    view.volume_stiffness_Pa = static_cast<float>(model.deformation.volume_stiffness_Pa);
+    view.spacing_m = static_cast<float>(model.phyxels.spacing_m);
+    view.substep_s = work.substep_s;
+    view.decay = static_cast<float>(std::exp(-model.deformation.damping_per_s * static_cast<double>(work.substep_s)));
+    return view;
+}
+
+void update_gradients(const Model& model, const State& state, Work& work) {
+    // The view is of mutable arrays, but this sweep only reads the state.
+    const KernelView view = KernelView::make(model, const_cast<State&>(state), work);
+    parallel_for("deformation.gradients", model.phyxels.first, model.phyxels.last, kChunk,
+                 [&](std::int64_t low, std::int64_t high) { sweep_gradients(view, low, high); });
+}
+
+void integrate(const Model& model, State& state, tissue::Exchange& exchange, Work& work) {
+    exchange.contact_force_N = Vec3(0.0);
+    if (!state.status.ok) return;
+    const KernelView view = KernelView::make(model, state, work);
+    const std::int64_t first = model.phyxels.first, last = model.phyxels.last;
+    for (int substep = 0; substep < work.substeps; ++substep) {
+        // Forces read the neighbours' displacements and moment stresses, gradients the neighbours' displacements:
+        // each sweep must end everywhere before the next begins.
+        parallel_for("deformation.velocities", first, last, kChunk,
+                     [&](std::int64_t low, std::int64_t high) { sweep_velocities(view, low, high); });
+        parallel_for("deformation.displacements", first, last, kChunk,
+                     [&](std::int64_t low, std::int64_t high) { sweep_displacements(view, low, high); });
+        parallel_for("deformation.gradients", first, last, kChunk,
+                     [&](std::int64_t low, std::int64_t high) { sweep_gradients(view, low, high); });
+    }
+    if (!all_finite(model, state)) state.status = {false, "displacement_m", first_bad_cell(model, state), state.tick};
+}
+
+double elastic_energy_J(const Model& model, const State& state, const Work& work) {
+    const Law<double> law{model.deformation.law, model.deformation.volume_stiffness_Pa};
+    const Lattice& lattice = model.phyxels;
+    auto displacement = [&](std::int64_t p) {
+        const auto i = static_cast<std::size_t>(p);
+        return Vec3(state.displacement_m[0][i], state.displacement_m[1][i], state.displacement_m[2][i]);
+    };
+    double total = 0.0;
+    for (std::int64_t p = lattice.first; p < lattice.last; ++p) {
+        const auto i = static_cast<std::size_t>(p);
+        const double volume = static_cast<double>(work.volume_m3[i]);
+        if (volume == 0.0) continue;
+        Mat3 g;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) g[c][r] = static_cast<double>(work.gradient[static_cast<std::size_t>(3 * r + c)][i]);
+        double misfit = 0.0;
+        for_each_link(lattice, state.links, p, [&](std::int64_t other, const Int3& step, double weight) {
+            const Vec3 d = displacement(other) - displacement(p) - g * (lattice.spacing_m * Vec3(step));
+            misfit += weight * glm::dot(d, d);
+        });
+        total += volume * law.energy_J_per_m3(g, static_cast<double>(work.lame_mu_Pa[i]),
+                                              static_cast<double>(work.lame_lambda_Pa[i])) +
+                 0.5 * static_cast<double>(work.hourglass[i]) * misfit;
+    }
+    return total;
+}
+
+double kinetic_energy_J(const Model& model, const State& state, const Work& work) {
+    double total = 0.0;
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
+        const auto i = static_cast<std::size_t>(p);
+        if (work.inverse_mass_per_kg[i] == 0.0f) continue;
+        const Vec3 v(state.velocity_m_per_s[0][i], state.velocity_m_per_s[1][i], state.velocity_m_per_s[2][i]);
+        total += 0.5 * glm::dot(v, v) / static_cast<double>(work.inverse_mass_per_kg[i]);
+    }
+    return total;
+}
+
+}  // namespace calot::deformation

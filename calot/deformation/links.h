@@ -1,0 +1,30 @@
+#pragma once
+// The 18 links of a phyxel, one at a time, for set-up and reference code. Kernels read the same bits a vector at a time.
+
+#include <cstdint>
+
+#include "calot/tissue/state.h"
+
+namespace calot::deformation {
+
+/// Weights of the kernel w = (h^2 - r^2)^3 with h = sqrt(3) s (Pan et al. 2019, Eq. 3), in units of s^6: w only ever
+/// appears in ratios.
+inline constexpr double kFaceWeight = 8.0;
+inline constexpr double kEdgeWeight = 1.0;
+/// Trace of the moment matrix of a phyxel with all 18 links, in units of s^2.
+inline constexpr double kFullTrace = 72.0;
+
+/// Calls visit(neighbour cell, step in cells from here to there, weight) for every live link of a phyxel.
+template <class Visit>
+void for_each_link(const Lattice& phyxels, const std::array<BitArray, 9>& links, std::int64_t phyxel,
+                   const Visit& visit) {
+    for (std::size_t d = 0; d < links.size(); ++d) {
+        const Int3 step = tissue::kLinkDirections[d];
+        const std::int64_t offset = phyxels.offset(step);
+        const double weight = static_cast<int>(d) < tissue::kFaceDirections ? kFaceWeight : kEdgeWeight;
+        if (links[d].test(phyxel)) visit(phyxel + offset, step, weight);
+        if (links[d].test(phyxel - offset)) visit(phyxel - offset, -step, weight);
+    }
+}
+
+}  // namespace calot::deformation

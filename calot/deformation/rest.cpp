@@ -1,0 +1,162 @@
+#include "calot/deformation/rest.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calot/deformation/integrate.h"
+#include "calot/deformation/links.h"
+
+namespace calot::deformation {
+
+using tissue::Material;
+using tissue::Model;
+using tissue::State;
+
+namespace {
+
+/// Ghosts stand for the half cell of held tissue between the clamped face and their centre, see docs/validation.md.
+constexpr double kGhostVolumeShare = 1.0;
+
+/// Sums over the hexels of one cell.
+struct Content {
+    int hexels = 0;
+    double density = 0.0, mu = 0.0, lambda = 0.0;
+
+    void add(const Material& material) {
+        const double shear = material.youngs_modulus_Pa / (2.0 * (1.0 + material.poisson_ratio));
+        ++hexels;
+        density += material.density_kg_per_m3;
+        mu += shear;
+        lambda += 2.0 * shear * material.poisson_ratio / (1.0 - 2.0 * material.poisson_ratio);
+    }
+};
+
+/// The hexels of a phyxel's cell for which keep(bit, hexel) holds.
+template <class Keep>
+Content content_of(const Model& model, std::int64_t phyxel, const Keep& keep) {
+    Content content;
+    const int m = model.hexels_per_edge;
+    const Int3 low = model.phyxels.coordinates(phyxel) * m;
+    for (int z = 0, bit = 0; z < m; ++z)
+        for (int y = 0; y < m; ++y)
+            for (int x = 0; x < m; ++x, ++bit) {
+                const std::int64_t hexel = model.hexels.index(low + Int3(x, y, z));
+                if (keep(bit, hexel)) content.add(model.materials[model.hexel_material[static_cast<std::size_t>(hexel)]]);
+            }
+    return content;
+}
+
+/// Eigenvalues of a symmetric matrix, smallest and largest (Smith 1961, trigonometric form).
+std::array<double, 2> extreme_eigenvalues(const Mat3& a) {
+    const double mean = (a[0][0] + a[1][1] + a[2][2]) / 3.0;
+    const Mat3 deviator = a - Mat3(mean);
+    double squares = 0.0;
+    for (int c = 0; c < 3; ++c) squares += glm::dot(deviator[c], deviator[c]);
+    const double radius = std::sqrt(squares / 6.0);
+    if (radius <= 1e-14 * mean) return {mean, mean};
+    const double half_det = 0.5 * glm::determinant(deviator / radius);
+    const double angle = std::acos(std::clamp(half_det, -1.0, 1.0)) / 3.0;
+    constexpr double kThirdOfTurn = 2.0943951023931953;
+    return {mean + 2.0 * radius * std::cos(angle + kThirdOfTurn), mean + 2.0 * radius * std::cos(angle)};
+}
+
+/// Moment matrix A = sum w X_ij X_ij^T over live links, in units of s^2.
+Mat3 moment(const Model& model, const State& state, std::int64_t phyxel) {
+    Mat3 a(0.0);
+    for_each_link(model.phyxels, state.links, phyxel, [&](std::int64_t, const Int3& step, double weight) {
+        a += weight * glm::outerProduct(Vec3(step), Vec3(step));
+    });
+    return a;
+}
+
+/// Trace of the moment matrix before anything was severed: all links between cells that were present, in units of s^2.
+double initial_trace(const Model& model, std::int64_t phyxel) {
+    double trace = 0.0;
+    const bool real = model.phyxel_initial.test(phyxel);
+    for (std::size_t d = 0; d < tissue::kLinkDirections.size(); ++d) {
+        const std::int64_t offset = model.phyxels.offset(tissue::kLinkDirections[d]);
+        // w |X|^2: 8 * 1 for faces, 1 * 2 for edges
+        const double term = static_cast<int>(d) < tissue::kFaceDirections ? kFaceWeight : 2.0 * kEdgeWeight;
+        for (const std::int64_t other : {phyxel + offset, phyxel - offset})
+            if (model.phyxel_initial.test(other) || (real && model.phyxel_ghost.test(other))) trace += term;
+    }
+    return trace;
+}
+
+/// Volume, mass and constants of a phyxel, volume not yet scaled.
+void fill_from_hexels(const Model& model, const Work& work, std::int64_t phyxel, PhyxelRest& rest) {
+    const std::uint64_t occupancy = work.occupancy[static_cast<std::size_t>(phyxel)];
+    const Content content =
+        content_of(model, phyxel, [&](int bit, std::int64_t) { return ((occupancy >> bit) & 1u) != 0; });
+    if (content.hexels == 0) return;
+    rest.volume_m3 = content.hexels * model.hexel_volume_m3();
+    rest.mu_Pa = content.mu / content.hexels;
+    rest.lambda_Pa = content.lambda / content.hexels;
+    const double lightest = model.deformation.mass_fraction_floor * model.hexels_per_phyxel();
+    const double mean_density = content.density / content.hexels;
+    rest.mass_kg = std::max<double>(content.hexels, lightest) * mean_density * model.hexel_volume_m3() *
+                   static_cast<double>(model.phyxel_mass_scale[static_cast<std::size_t>(phyxel)]);
+}
+
+/// The same for a ghost: the mean over the cells linked to it, as they were at the start.
+void fill_from_neighbours(const Model& model, const State& state, std::int64_t phyxel, PhyxelRest& rest) {
+    double total = 0.0;
+    for_each_link(model.phyxels, state.links, phyxel, [&](std::int64_t other, const Int3&, double weight) {
+        const Content content =
+            content_of(model, other, [&](int, std::int64_t hexel) { return model.hexel_initial.test(hexel); });
+        if (content.hexels == 0) return;
+        total += weight;
+        rest.volume_m3 += weight * content.hexels * model.hexel_volume_m3();
+        rest.mu_Pa += weight * content.mu / content.hexels;
+        rest.lambda_Pa += weight * content.lambda / content.hexels;
+    });
+    if (total == 0.0) return;
+    rest.volume_m3 *= kGhostVolumeShare / total;
+    rest.mu_Pa /= total;
+    rest.lambda_Pa /= total;
+}
+
+}  // namespace
+
+PhyxelRest phyxel_rest(const Model& model, const State& state, const Work& work, std::int64_t phyxel) {
+    PhyxelRest rest;
+    const bool ghost = model.phyxel_ghost.test(phyxel);
+    if (ghost)
+        fill_from_neighbours(model, state, phyxel, rest);
+    else if (state.phyxel_present.test(phyxel))
+        fill_from_hexels(model, work, phyxel, rest);
+    if (rest.volume_m3 == 0.0) return rest;
+
+    const Mat3 a = moment(model, state, phyxel);
+    const auto [smallest, largest] = extreme_eigenvalues(a);
+    // Nearly flat or lonely neighbourhoods: their gradient is ill-determined and blows up. They have no stress of their
+    // own and are carried by what their neighbours see of them.
+    if (!(smallest >= model.deformation.singular_ratio * largest) || largest <= 0.0) return rest;
+    const double trace = a[0][0] + a[1][1] + a[2][2];
+    rest.volume_m3 *= std::min(1.0, trace / initial_trace(model, phyxel));
+    const double s2 = model.phyxels.spacing_m * model.phyxels.spacing_m;
+    rest.moment_inverse_per_m2 = glm::inverse(a) / s2;
+    const double youngs = rest.mu_Pa * (3.0 * rest.lambda_Pa + 2.0 * rest.mu_Pa) / (rest.lambda_Pa + rest.mu_Pa);
+    rest.hourglass_N_per_m = model.deformation.hourglass_alpha * youngs * rest.volume_m3 / (trace * s2);
+    return rest;
+}
+
+void refresh_phyxel(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
+    const auto cell = static_cast<std::size_t>(phyxel);
+    const PhyxelRest rest = phyxel_rest(model, state, work, phyxel);
+    const Mat3& inverse = rest.moment_inverse_per_m2;
+    const std::array<double, 6> upper{inverse[0][0], inverse[1][0], inverse[2][0],
+                                      inverse[1][1], inverse[2][1], inverse[2][2]};
+    for (std::size_t k = 0; k < upper.size(); ++k) work.moment_inverse[k][cell] = static_cast<float>(upper[k]);
+    work.volume_m3[cell] = static_cast<float>(rest.volume_m3);
+    work.inverse_mass_per_kg[cell] = rest.mass_kg > 0.0 ? static_cast<float>(1.0 / rest.mass_kg) : 0.0f;
+    work.hourglass[cell] = static_cast<float>(rest.hourglass_N_per_m);
+    work.lame_mu_Pa[cell] = static_cast<float>(rest.mu_Pa);
+    work.lame_lambda_Pa[cell] = static_cast<float>(rest.lambda_Pa);
+    if (rest.volume_m3 == 0.0) {
+        for (auto& component : work.gradient) component[cell] = 0.0f;
+        for (auto& component : work.moment_stress) component[cell] = 0.0f;
+    }
+}
+
+}  // namespace calot::deformation

@@ -1,0 +1,25 @@
+#pragma once
+// What a phyxel is at rest: moment matrix, volume, mass, elastic constants (docs/physics.md section 2).
+
+#include <cstdint>
+
+#include "calot/deformation/work.h"
+
+namespace calot::deformation {
+
+/// In double precision; refresh_phyxel stores it in Work as floats.
+struct PhyxelRest {
+    Mat3 moment_inverse_per_m2{0.0};  ///< A^-1; zero where A is (nearly) singular
+    double volume_m3 = 0.0;           ///< v, effective
+    double mass_kg = 0.0;             ///< 0 = absent or fixed
+    double hourglass_N_per_m = 0.0;   ///< kappa
+    double mu_Pa = 0.0;
+    double lambda_Pa = 0.0;
+};
+
+/// Of a phyxel or ghost, from its live links and (phyxels only) from Work::occupancy. Zeros for an absent cell. A ghost
+/// takes its elastic constants and volume from the hexels that the cells linked to it had at the start, so that it
+/// changes only with its links.
+PhyxelRest phyxel_rest(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t phyxel);
+
+}  // namespace calot::deformation
