@@ -113,7 +113,8 @@ double elastic_energy_J(const Model& model, const State& state, const Work& work
         if (volume == 0.0) continue;
         Mat3 g;
         for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c) g[c][r] = static_cast<double>(work.gradient[static_cast<std::size_t>(3 * r + c)][i]);
+            for (int c = 0; c < 3; ++c)
+                g[c][r] = static_cast<double>(work.gradient[static_cast<std::size_t>(3 * r + c)][i]);
         double misfit = 0.0;
         for_each_link(lattice, state.links, p, [&](std::int64_t other, const Int3& step, double weight) {
             const Vec3 d = displacement(other) - displacement(p) - g * (lattice.spacing_m * Vec3(step));

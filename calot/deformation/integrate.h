@@ -10,8 +10,9 @@ namespace calot::deformation {
 /// when a displacement is no longer finite.
 void integrate(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
-/// Recomputes rest properties of one phyxel (moment, volume, mass, hourglass, Lamé constants) from its links and
-/// Work::occupancy.
+/// Recomputes rest properties of one phyxel (moment, volume, mass, hourglass, Lamé constants) and of the ghosts beside
+/// it, from its links and Work::occupancy. Call it for every phyxel whose hexels or links changed, after all of them
+/// have changed.
 void refresh_phyxel(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t phyxel);
 
 /// Recomputes gradient and moment stress of all phyxels from displacements.

@@ -21,14 +21,14 @@ struct KernelView {
     const float* lame_mu_Pa = nullptr;
     const float* lame_lambda_Pa = nullptr;
     std::array<const std::uint8_t*, 9> links{};
-    std::array<std::int64_t, 9> offset{};      ///< of the nine positive directions
+    std::array<std::int64_t, 9> offset{};  ///< of the nine positive directions
     const std::uint8_t* present = nullptr;
     const std::uint8_t* ghost = nullptr;
     tissue::ElasticLaw law = tissue::ElasticLaw::stable_neo_hookean;
     float volume_stiffness_Pa = 0.0f;
     float spacing_m = 0.0f;
     float substep_s = 0.0f;
-    float decay = 1.0f;                        ///< of velocity in a substep
+    float decay = 1.0f;                           ///< of velocity in a substep
     std::array<float, 3> gravity_step_m_per_s{};  ///< velocity gained in a substep
 
     static KernelView make(const tissue::Model& model, tissue::State& state, Work& work);

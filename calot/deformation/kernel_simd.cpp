@@ -32,13 +32,27 @@ using Mask = hn::Mask<D>;
 struct Lanes {
     hn::Vec<D> v;
 };
-HWY_INLINE Lanes operator+(Lanes a, Lanes b) { return {hn::Add(a.v, b.v)}; }
-HWY_INLINE Lanes operator-(Lanes a, Lanes b) { return {hn::Sub(a.v, b.v)}; }
-HWY_INLINE Lanes operator*(Lanes a, Lanes b) { return {hn::Mul(a.v, b.v)}; }
-HWY_INLINE Lanes load(const float* p) { return {hn::LoadU(D(), p)}; }
-HWY_INLINE void store(Lanes a, float* p) { hn::StoreU(a.v, D(), p); }
-HWY_INLINE Lanes all(float value) { return {hn::Set(D(), value)}; }
-HWY_INLINE Lanes where(Mask mask, Lanes a) { return {hn::IfThenElseZero(mask, a.v)}; }
+HWY_INLINE Lanes operator+(Lanes a, Lanes b) {
+    return {hn::Add(a.v, b.v)};
+}
+HWY_INLINE Lanes operator-(Lanes a, Lanes b) {
+    return {hn::Sub(a.v, b.v)};
+}
+HWY_INLINE Lanes operator*(Lanes a, Lanes b) {
+    return {hn::Mul(a.v, b.v)};
+}
+HWY_INLINE Lanes load(const float* p) {
+    return {hn::LoadU(D(), p)};
+}
+HWY_INLINE void store(Lanes a, float* p) {
+    hn::StoreU(a.v, D(), p);
+}
+HWY_INLINE Lanes all(float value) {
+    return {hn::Set(D(), value)};
+}
+HWY_INLINE Lanes where(Mask mask, Lanes a) {
+    return {hn::IfThenElseZero(mask, a.v)};
+}
 
 /// Columns of the nine positive directions: an edge step is e[first] + sign e[second].
 template <int d>

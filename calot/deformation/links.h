@@ -1,5 +1,6 @@
 #pragma once
-// The 18 links of a phyxel, one at a time, for set-up and reference code. Kernels read the same bits a vector at a time.
+// The 18 links of a phyxel, one at a time, for set-up and reference code. Kernels read the same bits a vector at a
+// time.
 
 #include <cstdint>
 

@@ -58,7 +58,8 @@ class Reference {
                 b += static_cast<Real>(w) * glm::outerProduct(u, x(step));
             });
             const Mat g = b * inverse;
-            const Mat stress = law_.stress_Pa(g, static_cast<Real>(rest[i].mu_Pa), static_cast<Real>(rest[i].lambda_Pa));
+            const Mat stress =
+                law_.stress_Pa(g, static_cast<Real>(rest[i].mu_Pa), static_cast<Real>(rest[i].lambda_Pa));
             gradient[i] = g;
             moment_stress[i] = static_cast<Real>(rest[i].volume_m3) * stress * inverse - hourglass(i) * g;
         }
@@ -85,7 +86,8 @@ class Reference {
             const auto i = static_cast<std::size_t>(p);
             Real misfit = 0;
             for_each_link(model_.phyxels, links_, p, [&](std::int64_t other, const Int3& step, double w) {
-                const Vec d = displacement_m[static_cast<std::size_t>(other)] - displacement_m[i] - gradient[i] * x(step);
+                const Vec d =
+                    displacement_m[static_cast<std::size_t>(other)] - displacement_m[i] - gradient[i] * x(step);
                 misfit += static_cast<Real>(w) * glm::dot(d, d);
             });
             const Real density = law_.energy_J_per_m3(gradient[i], static_cast<Real>(rest[i].mu_Pa),

@@ -31,17 +31,18 @@ struct Content {
     }
 };
 
-/// The hexels of a phyxel's cell for which keep(bit, hexel) holds.
-template <class Keep>
-Content content_of(const Model& model, std::int64_t phyxel, const Keep& keep) {
+/// The surviving hexels of a phyxel's cell.
+Content content_of(const Model& model, const Work& work, std::int64_t phyxel) {
     Content content;
+    const std::uint64_t occupancy = work.occupancy[static_cast<std::size_t>(phyxel)];
     const int m = model.hexels_per_edge;
     const Int3 low = model.phyxels.coordinates(phyxel) * m;
     for (int z = 0, bit = 0; z < m; ++z)
         for (int y = 0; y < m; ++y)
             for (int x = 0; x < m; ++x, ++bit) {
+                if (((occupancy >> bit) & 1u) == 0) continue;
                 const std::int64_t hexel = model.hexels.index(low + Int3(x, y, z));
-                if (keep(bit, hexel)) content.add(model.materials[model.hexel_material[static_cast<std::size_t>(hexel)]]);
+                content.add(model.materials[model.hexel_material[static_cast<std::size_t>(hexel)]]);
             }
     return content;
 }
@@ -85,9 +86,7 @@ double initial_trace(const Model& model, std::int64_t phyxel) {
 
 /// Volume, mass and constants of a phyxel, volume not yet scaled.
 void fill_from_hexels(const Model& model, const Work& work, std::int64_t phyxel, PhyxelRest& rest) {
-    const std::uint64_t occupancy = work.occupancy[static_cast<std::size_t>(phyxel)];
-    const Content content =
-        content_of(model, phyxel, [&](int bit, std::int64_t) { return ((occupancy >> bit) & 1u) != 0; });
+    const Content content = content_of(model, work, phyxel);
     if (content.hexels == 0) return;
     rest.volume_m3 = content.hexels * model.hexel_volume_m3();
     rest.mu_Pa = content.mu / content.hexels;
@@ -98,17 +97,19 @@ void fill_from_hexels(const Model& model, const Work& work, std::int64_t phyxel,
                    static_cast<double>(model.phyxel_mass_scale[static_cast<std::size_t>(phyxel)]);
 }
 
-/// The same for a ghost: the mean over the cells linked to it, as they were at the start.
-void fill_from_neighbours(const Model& model, const State& state, std::int64_t phyxel, PhyxelRest& rest) {
+/// The same for a ghost: the mean over the phyxels linked to it. (With the volume of a full cell, a ghost is too stiff
+/// for the mass of burnt-out neighbours, and the time step unstable.)
+void fill_from_neighbours(const Model& model, const State& state, const Work& work, std::int64_t ghost,
+                          PhyxelRest& rest) {
     double total = 0.0;
-    for_each_link(model.phyxels, state.links, phyxel, [&](std::int64_t other, const Int3&, double weight) {
-        const Content content =
-            content_of(model, other, [&](int, std::int64_t hexel) { return model.hexel_initial.test(hexel); });
-        if (content.hexels == 0) return;
+    for_each_link(model.phyxels, state.links, ghost, [&](std::int64_t other, const Int3&, double weight) {
+        PhyxelRest neighbour;
+        fill_from_hexels(model, work, other, neighbour);
+        if (neighbour.volume_m3 == 0.0) return;
         total += weight;
-        rest.volume_m3 += weight * content.hexels * model.hexel_volume_m3();
-        rest.mu_Pa += weight * content.mu / content.hexels;
-        rest.lambda_Pa += weight * content.lambda / content.hexels;
+        rest.volume_m3 += weight * neighbour.volume_m3;
+        rest.mu_Pa += weight * neighbour.mu_Pa;
+        rest.lambda_Pa += weight * neighbour.lambda_Pa;
     });
     if (total == 0.0) return;
     rest.volume_m3 *= kGhostVolumeShare / total;
@@ -122,7 +123,7 @@ PhyxelRest phyxel_rest(const Model& model, const State& state, const Work& work,
     PhyxelRest rest;
     const bool ghost = model.phyxel_ghost.test(phyxel);
     if (ghost)
-        fill_from_neighbours(model, state, phyxel, rest);
+        fill_from_neighbours(model, state, work, phyxel, rest);
     else if (state.phyxel_present.test(phyxel))
         fill_from_hexels(model, work, phyxel, rest);
     if (rest.volume_m3 == 0.0) return rest;
@@ -141,7 +142,10 @@ PhyxelRest phyxel_rest(const Model& model, const State& state, const Work& work,
     return rest;
 }
 
-void refresh_phyxel(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
+namespace {
+
+/// Stores the rest properties of one cell.
+void store_rest(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
     const auto cell = static_cast<std::size_t>(phyxel);
     const PhyxelRest rest = phyxel_rest(model, state, work, phyxel);
     const Mat3& inverse = rest.moment_inverse_per_m2;
@@ -157,6 +161,15 @@ void refresh_phyxel(const Model& model, const State& state, Work& work, std::int
         for (auto& component : work.gradient) component[cell] = 0.0f;
         for (auto& component : work.moment_stress) component[cell] = 0.0f;
     }
+}
+
+}  // namespace
+
+void refresh_phyxel(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
+    store_rest(model, state, work, phyxel);
+    for (const Int3& step : tissue::kLinkDirections)
+        for (const std::int64_t offset : {model.phyxels.offset(step), -model.phyxels.offset(step)})
+            if (model.phyxel_ghost.test(phyxel + offset)) store_rest(model, state, work, phyxel + offset);
 }
 
 }  // namespace calot::deformation

@@ -17,9 +17,8 @@ struct PhyxelRest {
     double lambda_Pa = 0.0;
 };
 
-/// Of a phyxel or ghost, from its live links and (phyxels only) from Work::occupancy. Zeros for an absent cell. A ghost
-/// takes its elastic constants and volume from the hexels that the cells linked to it had at the start, so that it
-/// changes only with its links.
+/// Of a phyxel or ghost, from its live links and from Work::occupancy. Zeros for an absent cell. A ghost takes its
+/// elastic constants and volume from the phyxels linked to it.
 PhyxelRest phyxel_rest(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t phyxel);
 
 }  // namespace calot::deformation

@@ -25,8 +25,8 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     const auto cells = static_cast<std::size_t>(model.phyxels.cells);
     work.occupancy.assign(cells, 0);
     for (auto& component : work.moment_inverse) component.assign(cells, 0.0f);
-    for (Array<float>* field : {&work.volume_m3, &work.inverse_mass_per_kg, &work.hourglass, &work.lame_mu_Pa,
-                                &work.lame_lambda_Pa})
+    for (Array<float>* field :
+         {&work.volume_m3, &work.inverse_mass_per_kg, &work.hourglass, &work.lame_mu_Pa, &work.lame_lambda_Pa})
         field->assign(cells, 0.0f);
     for (auto& component : work.gradient) component.assign(cells, 0.0f);
     for (auto& component : work.moment_stress) component.assign(cells, 0.0f);

@@ -39,7 +39,8 @@ struct Body {
         Mat3 g;
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c)
-                g[c][r] = static_cast<double>(work.gradient[static_cast<std::size_t>(3 * r + c)][static_cast<std::size_t>(p)]);
+                g[c][r] = static_cast<double>(
+                    work.gradient[static_cast<std::size_t>(3 * r + c)][static_cast<std::size_t>(p)]);
         return g;
     }
     void set_displacement(std::int64_t p, const Vec3& u) {

@@ -99,7 +99,8 @@ TEST_P(EveryLaw, AffineDeformationIsExact) {
         for_each_link(model.phyxels, body.state.links, p, [&](std::int64_t other, const Int3&, double) {
             ++links;
             int of_other = 0;
-            for_each_link(model.phyxels, body.state.links, other, [&](std::int64_t, const Int3&, double) { ++of_other; });
+            for_each_link(model.phyxels, body.state.links, other,
+                          [&](std::int64_t, const Int3&, double) { ++of_other; });
             deep &= of_other == 18;
         });
         double& largest = links == 18 && deep ? interior : boundary;
