@@ -13,25 +13,26 @@ namespace calot::deformation {
 /// [phyxels.cells] each. Cells without a phyxel hold zeros. Ghosts have moments, volume and gradients like all others.
 struct Work {
     // Rest properties, recomputed for a phyxel whenever its hexels or links change (refresh_phyxel)
-    Array<std::uint64_t> occupancy;                 ///< surviving hexels of the main component; bit x + m (y + m z), local coordinates; 0 for ghosts
-    std::array<Array<float>, 6> moment_inverse;     ///< A^-1 [1/m^2], symmetric: xx xy xz yy yz zz; zero = no own stress
-    Array<float> volume_m3;                         ///< v, effective (scaled down when poorly linked)
-    Array<float> inverse_mass_per_kg;               ///< 0 = absent or ghost
-    Array<float> hourglass;                         ///< kappa
-    Array<float> lame_mu_Pa, lame_lambda_Pa;        ///< volume averages over surviving hexels
+    Array<std::uint64_t>
+        occupancy;  ///< surviving hexels of the main component; bit x + m (y + m z), local coordinates; 0 for ghosts
+    std::array<Array<float>, 6> moment_inverse;  ///< A^-1 [1/m^2], symmetric: xx xy xz yy yz zz; zero = no own stress
+    Array<float> volume_m3;                      ///< v, effective (scaled down when poorly linked)
+    Array<float> inverse_mass_per_kg;            ///< 0 = absent or ghost
+    Array<float> hourglass;                      ///< kappa
+    Array<float> lame_mu_Pa, lame_lambda_Pa;     ///< volume averages over surviving hexels
 
     // Always current: belongs to State::displacement_m at the end of integrate() and after sever_burnt_links()
-    std::array<Array<float>, 9> gradient;           ///< G, row-major: gradient[3 r + c] = du_r / dX_c
-    std::array<Array<float>, 9> moment_stress;      ///< M = v P A^-1 - kappa G, row-major
+    std::array<Array<float>, 9> gradient;       ///< G, row-major: gradient[3 r + c] = du_r / dX_c
+    std::array<Array<float>, 9> moment_stress;  ///< M = v P A^-1 - kappa G, row-major
 
     // Topology and embedding (initialise_topology)
-    Array<std::uint64_t> held;                      ///< [phyxels.cells] cells of Model::hexel_held, bits as in occupancy
-    Array<std::uint16_t> hold_distance;             ///< [phyxels.cells] links to the nearest ghost at set-up, 65535 = none
-    BitArray changed;                               ///< [phyxels.cells] in Exchange::changed_phyxels; clear between calls
-    Array<std::uint32_t> search_mark;               ///< [phyxels.cells] last search of crumbs that came by
-    Array<std::int64_t> search_stack;               ///< [phyxels.cells]
-    std::uint32_t search = 0;                       ///< number of the last search
-    Array<float> hexel_weight;                      ///< [m^3][27] kernel of hexel centres towards the 3^3 phyxels about their own
+    Array<std::uint64_t> held;           ///< [phyxels.cells] cells of Model::hexel_held, bits as in occupancy
+    Array<std::uint16_t> hold_distance;  ///< [phyxels.cells] links to the nearest ghost at set-up, 65535 = none
+    BitArray changed;                    ///< [phyxels.cells] in Exchange::changed_phyxels; clear between calls
+    Array<std::uint32_t> search_mark;    ///< [phyxels.cells] last search of crumbs that came by
+    Array<std::int64_t> search_stack;    ///< [phyxels.cells]
+    std::uint32_t search = 0;            ///< number of the last search
+    Array<float> hexel_weight;           ///< [m^3][27] kernel of hexel centres towards the 3^3 phyxels about their own
 
     int substeps = 1;
     float substep_s = 1e-3f;

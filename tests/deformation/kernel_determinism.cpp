@@ -20,7 +20,7 @@ Body random_body(ElasticLaw law, double severed, const Int3& size = {9, 7, 8}) {
     model.deformation.gravity_m_per_s2 = Vec3(1.0, -9.81, 2.0);
     Body body(std::move(model));
     wound(body, 0.3, severed, 3);
-    shake(body, 0.03, 0.5, 4);
+    shake(body, 0.03, 0.05, 4);
     return body;
 }
 
@@ -39,7 +39,7 @@ std::uint64_t hash_of(Body& body) {
 TEST(Kernel, AgreesWithTheScalarReference) {
     constexpr double kTolerance = 1e-5;
     for (const ElasticLaw law : {ElasticLaw::stable_neo_hookean, ElasticLaw::saint_venant_kirchhoff})
-        for (const double severed : {0.0, 0.3, 0.7}) {
+        for (const double severed : {0.0, 0.3, 0.5}) {
             Body body = random_body(law, severed);
             Reference<double> reference(body.model, body.state, body.work);
             reference.update_gradients();
