@@ -1,13 +1,34 @@
 #pragma once
 // Contact between instruments and tissue, and between instruments and rigid organs (docs/physics.md section 8).
+//
+// Tissue: surface hexels are points with a radius of half a spacing; each near one gives a one-sided constraint against
+// the capsule it is deepest in, and a second where it is wedged between two. Many points share the load, so that the
+// wire cannot slip between them. The constraint is a half-space that moves with the instrument, taken at the start of
+// the tick, so that a fast wire cannot jump over a hexel within a tick: its far side is behind the half-space too.
+//
+// Sides. A thin wire has two, and the distance to its axis does not tell which one a hexel came from once the hexel's
+// centre is inside the metal. There, a hexel whose free side faces away from the axis came over it: it is pushed back
+// along its own surface normal. No memory is needed.
 
 #include "calot/tissue/exchange.h"
 #include "calot/tissue/state.h"
 
 namespace calot::instruments {
 
-/// From Exchange::capsules and ::near: one-sided constraints into Exchange::contacts (against many points at once), and
-/// the penalty force of rigid organs on the hook into Exchange::organ_force_N.
+/// Stiffness of rigid organs against the hook. Chosen: 1 mm of depth gives 1 N, firm to the hand, stable at 1 kHz.
+inline constexpr double kOrganStiffness_N_per_m = 1000.0;
+
+/// From Exchange::capsules and ::near: one-sided constraints into Exchange::contacts, and the penalty force of rigid
+/// organs on the hook into Exchange::organ_force_N: per organ, its stiffness times the greatest depth found at points
+/// along the capsules, along the gradient of its distance.
 void find_contacts(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange);
+
+/// How a capsule touches a point of radius `point_radius_m` at the start of the tick.
+struct Touch {
+    Vec3f normal{0.0f};  ///< unit, out of the capsule
+    float gap_m = 0.0f;
+    Vec3f tool_velocity_m_per_s{0.0f};
+};
+Touch touch(const tissue::Capsule& capsule, double dt_s, const tissue::NearHexel& hexel, double point_radius_m);
 
 }  // namespace calot::instruments

@@ -1,0 +1,142 @@
+#include "calot/instruments/contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace calot::instruments {
+
+namespace {
+
+/// Constraints are made this far ahead of touching, beyond what the instrument moves in the tick: tissue rebounds at
+/// some 0.1 m/s at most.
+constexpr double kMargin_m = 2e-4;
+/// Two constraints at one hexel must differ in direction by more than 60 degrees.
+constexpr float kWedgeCosine = 0.5f;
+/// Nearer to the axis than this share of the radius, the direction away from it says nothing.
+constexpr double kCoreShare = 0.25;
+/// Points along a capsule at which an organ's distance is taken are at most this far apart; the shaft's are further.
+constexpr double kWireSample_m = 2.5e-3;
+constexpr int kMostSamples = 12;
+
+double speed(const tissue::Capsule& c) {
+    return std::fmax(glm::length(c.velocity_a_m_per_s), glm::length(c.velocity_b_m_per_s));
+}
+
+bool overlap(const Box& a, const Box& b) {
+    return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
+}
+
+/// The part [t0, t1] of the segment a, b inside a box; false when there is none.
+bool clip(const Vec3& a, const Vec3& b, const Box& box, double& t0, double& t1) {
+    t0 = 0.0, t1 = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double d = b[axis] - a[axis];
+        if (std::fabs(d) < 1e-12) {
+            if (a[axis] < box.low[axis] || a[axis] > box.high[axis]) return false;
+            continue;
+        }
+        const double u = (box.low[axis] - a[axis]) / d, v = (box.high[axis] - a[axis]) / d;
+        t0 = std::fmax(t0, std::fmin(u, v));
+        t1 = std::fmin(t1, std::fmax(u, v));
+    }
+    return t0 <= t1;
+}
+
+/// Gradient of a distance by central differences, normalised.
+Vec3 outward_of(const anatomy::Shape& shape, const Vec3& p) {
+    constexpr double kStep_m = 1e-5;
+    Vec3 gradient(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3 step(0.0);
+        step[axis] = kStep_m;
+        gradient[axis] = shape.distance_m(p + step) - shape.distance_m(p - step);
+    }
+    const double length = glm::length(gradient);
+    return length > 0.0 ? gradient / length : Vec3(0.0);
+}
+
+Vec3 organ_force_N(const anatomy::Shape& shape, const std::vector<tissue::Capsule>& capsules) {
+    const Box bounds = shape.bounds_m();
+    double deepest_m = 0.0;
+    Vec3 where(0.0);
+    for (const tissue::Capsule& c : capsules) {
+        const Box wide{bounds.low - c.radius_m, bounds.high + c.radius_m};
+        double t0, t1;
+        if (!overlap(wide, {glm::min(c.a_m, c.b_m), glm::max(c.a_m, c.b_m)}) || !clip(c.a_m, c.b_m, wide, t0, t1))
+            continue;
+        const double length_m = (t1 - t0) * glm::length(c.b_m - c.a_m);
+        const int samples = std::min(kMostSamples, 2 + static_cast<int>(length_m / kWireSample_m));
+        for (int k = 0; k < samples; ++k) {
+            const Vec3 p = glm::mix(c.a_m, c.b_m, t0 + (t1 - t0) * k / (samples - 1));
+            const double depth_m = c.radius_m - shape.distance_m(p);
+            if (depth_m > deepest_m) {
+                deepest_m = depth_m;
+                where = p;
+            }
+        }
+    }
+    return deepest_m > 0.0 ? kOrganStiffness_N_per_m * deepest_m * outward_of(shape, where) : Vec3(0.0);
+}
+
+}  // namespace
+
+Touch touch(const tissue::Capsule& capsule, double dt_s, const tissue::NearHexel& hexel, double point_radius_m) {
+    // Capsules stand where they are at the end of the tick, tissue where it is at its start.
+    const Vec3 a = capsule.a_m - dt_s * capsule.velocity_a_m_per_s, b = capsule.b_m - dt_s * capsule.velocity_b_m_per_s;
+    const Vec3 p(hexel.world_m), ab = b - a;
+    const double length2 = glm::dot(ab, ab);
+    const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, ab) / length2, 0.0, 1.0) : 0.0;
+    const Vec3 away = p - (a + t * ab);
+    const double distance_m = glm::length(away);
+    const Vec3 outward(hexel.outward);
+    const bool has_outward = glm::dot(outward, outward) > 0.0;
+
+    Vec3 normal = distance_m > 0.0 ? away / distance_m : Vec3(0.0, 0.0, 1.0);
+    const bool core = distance_m < kCoreShare * capsule.radius_m;
+    const bool behind = distance_m < capsule.radius_m && glm::dot(normal, outward) > 0.0;
+    if (has_outward && (core || behind)) normal = -outward;
+
+    Touch result;
+    result.normal = Vec3f(normal);
+    result.gap_m = static_cast<float>(glm::dot(away, normal) - capsule.radius_m - point_radius_m);
+    result.tool_velocity_m_per_s = Vec3f(glm::mix(capsule.velocity_a_m_per_s, capsule.velocity_b_m_per_s, t));
+    return result;
+}
+
+void find_contacts(const tissue::Model& model, const tissue::State&, tissue::Exchange& exchange) {
+    exchange.contacts.clear();
+    const double point_radius_m = 0.5 * model.hexels.spacing_m;
+    double fastest = 0.0;
+    for (const tissue::Capsule& c : exchange.capsules) fastest = std::fmax(fastest, speed(c));
+    const auto margin_m = static_cast<float>(kMargin_m + fastest * model.tick_s);
+    for (std::size_t k = 0; k < exchange.near.size(); ++k) {
+        const tissue::NearHexel& hexel = exchange.near[k];
+        if (hexel.distance_m > static_cast<float>(point_radius_m) + 2.0f * margin_m) continue;  // moved by one tick
+        Touch first, second;
+        bool has_first = false, has_second = false;
+        for (const tissue::Capsule& capsule : exchange.capsules) {
+            const Touch found = touch(capsule, model.tick_s, hexel, point_radius_m);
+            if (found.gap_m > margin_m) continue;
+            if (!has_first || found.gap_m < first.gap_m) {
+                second = first;
+                has_second = has_first;
+                first = found;
+                has_first = true;
+            } else if (!has_second || found.gap_m < second.gap_m) {
+                second = found;
+                has_second = true;
+            }
+        }
+        auto add = [&](const Touch& t) {
+            exchange.contacts.push_back({static_cast<std::int32_t>(k), t.normal, t.gap_m, t.tool_velocity_m_per_s});
+        };
+        if (has_first) add(first);
+        if (has_second && glm::dot(first.normal, second.normal) < kWedgeCosine) add(second);
+    }
+
+    exchange.organ_force_N = Vec3(0.0);
+    for (const tissue::RigidOrgan& organ : model.organs)
+        exchange.organ_force_N += organ_force_N(*organ.shape, exchange.capsules);
+}
+
+}  // namespace calot::instruments
