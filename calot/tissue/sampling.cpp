@@ -11,6 +11,9 @@ namespace calot::tissue {
 
 namespace {
 
+/// Cells on a shared face of tissue and organ (to rounding) count as held: air between them would let the tissue go.
+constexpr double kOnSurface_m = 1e-9;
+
 /// Lattices whose cells cover the bounds of all tissues inside the field.
 Box sampled_box(const anatomy::Anatomy& anatomy) {
     Box box{Vec3(1e9), Vec3(-1e9)};
@@ -80,7 +83,7 @@ Model sample(const anatomy::Anatomy& anatomy, const SamplingParameters& paramete
                             if (anatomy.tissues[k].shape->distance_m(p) < 0.0) found = material_of[k];
                     if (found == kNoMaterial)
                         for (const auto& organ : model.organs)
-                            if (organ.holds_tissue && organ.shape->distance_m(p) < 0.0) {
+                            if (organ.holds_tissue && organ.shape->distance_m(p) < kOnSurface_m) {
                                 found = kHeld;
                                 break;
                             }
