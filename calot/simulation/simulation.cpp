@@ -1,8 +1,24 @@
 #include "calot/simulation/simulation.h"
 
+#include "calot/base/error.h"
 #include "calot/deformation/embedding.h"
+#include "calot/deformation/topology.h"
 
 namespace calot::simulation {
+
+namespace {
+
+/// A fresh state with the links that the anatomy carries, without what nothing holds.
+tissue::State make_initial_state(const tissue::Model& model) {
+    tissue::State state = tissue::State::make(model);
+    deformation::sever_initial_links(model, state);
+    if (state.hexel_present.count() == 0)
+        throw InputError("no tissue is held by any organ",
+                         "let the tissue touch an organ that holds, or use no organs at all");
+    return state;
+}
+
+}  // namespace
 
 Work::Work(const tissue::Model& model, const tissue::State& state, const instruments::HookShape& hook,
            const effects::SmokeParameters& smoke)
@@ -12,12 +28,13 @@ Work::Work(const tissue::Model& model, const tissue::State& state, const instrum
       thermal(thermal::make_work(model, state)),
       surface(model),
       smoke(smoke) {
+    tissue::reserve_exchange(model, exchange);
     surface.rebuild(model, state);
 }
 
 Simulation::Simulation(std::shared_ptr<const Setup> setup)
     : setup_(std::move(setup)),
-      state_(tissue::State::make(setup_->model)),
+      state_(make_initial_state(setup_->model)),
       work_(setup_->model, state_, setup_->hook, setup_->smoke) {}
 
 bool Simulation::tick(const tissue::Input& input) {
