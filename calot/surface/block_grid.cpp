@@ -76,6 +76,53 @@ std::uint32_t BlockGrid::nine_bits(int bx, int y, int z) const {
 
 namespace {
 
+/// Set bits of a word. (The builtin is a call where the target has no such instruction.)
+int count_bits(std::uint32_t word) {
+    word -= (word >> 1) & 0x55555555u;
+    word = (word & 0x33333333u) + ((word >> 2) & 0x33333333u);
+    return static_cast<int>((((word + (word >> 4)) & 0x0f0f0f0fu) * 0x01010101u) >> 24);
+}
+
+/// Corner codes of the edges that a block's cubes may have: those that begin at points 0 .. 8 along each axis.
+struct EdgeCodes {
+    static constexpr int kEdge = kBlock + 1;
+    std::array<std::uint16_t, 3 * kEdge * kEdge * kEdge> code;
+
+    static constexpr int at(int x, int y, int z, int axis) { return 3 * ((z * kEdge + y) * kEdge + x) + axis; }
+    /// Takes over a row of a block that is `owner` from here.
+    void add_row(const BlockEdges& edges, int owner, int y, int z) {
+        const auto row = static_cast<std::size_t>(kBlock * z + y);
+        const int y_here = y + kBlock * ((owner >> 1) & 1), z_here = z + kBlock * (owner >> 2);
+        if ((owner & 1) == 0) {
+            int place = edges.before[row];
+            for (std::uint32_t cut = edges.cut[row]; cut != 0; cut &= cut - 1, ++place) {
+                const int bit = __builtin_ctz(cut);
+                code[static_cast<std::size_t>(at(bit & 7, y_here, z_here, bit >> 3))] = CornerCode::make(owner, place);
+            }
+            return;
+        }
+        // Of blocks further along x, the edges at their lowest points.
+        const std::uint32_t cut = edges.cut[row];
+        for (int axis = 1; axis < 3; ++axis)
+            if ((cut >> (8 * axis)) & 1u)
+                code[static_cast<std::size_t>(at(kBlock, y_here, z_here, axis))] =
+                    CornerCode::make(owner, edges.before[row] + count_bits(cut & ((1u << (8 * axis)) - 1u)));
+    }
+};
+
+/// Where the edges of a cube are in EdgeCodes, from its lowest corner on.
+constexpr std::array<int, 12> kEdgeOffsets = [] {
+    std::array<int, 12> offsets{};
+    for (int edge = 0; edge < 12; ++edge) {
+        const int axis = edge / 4, b = edge & 1, c = (edge >> 1) & 1;
+        std::array<int, 3> p{};
+        p[static_cast<std::size_t>((axis + 1) % 3)] = b;
+        p[static_cast<std::size_t>((axis + 2) % 3)] = c;
+        offsets[static_cast<std::size_t>(edge)] = EdgeCodes::at(p[0], p[1], p[2], axis);
+    }
+    return offsets;
+}();
+
 /// Cubes of a row that the surface cuts, from the nine bits of its four lines of corners.
 std::uint32_t cut_cubes(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     const std::uint32_t any = a | b | c | d, all = a & b & c & d;
@@ -104,7 +151,7 @@ void BlockGrid::find_edges(std::int64_t block) {
             edges.cut[r] =
                 ((here ^ (here >> 1)) & 0xffu) | (((here ^ next) & 0xffu) << 8) | (((here ^ above) & 0xffu) << 16);
             edges.before[r] = static_cast<std::uint16_t>(vertices);
-            vertices += __builtin_popcount(edges.cut[r]);
+            vertices += count_bits(edges.cut[r]);
             for (std::uint32_t cut = cut_cubes(here, next, above, next_above); cut != 0; cut &= cut - 1)
                 triangles += cases[case_of(here, next, above, next_above, __builtin_ctz(cut))].triangles;
             here = next;
@@ -117,13 +164,16 @@ void BlockGrid::find_edges(std::int64_t block) {
 
 void BlockGrid::write_triangles(std::int64_t block, std::uint16_t* corner) const {
     const Int3 b = block_coordinates(block);
-    const auto& cases = cube_cases();
-    std::array<const BlockEdges*, 8> owners{};
-    for (int k = 0; k < 8; ++k) {
-        const Int3 n = b + Int3(k & 1, (k >> 1) & 1, k >> 2);
-        if (n.x < blocks_.x && n.y < blocks_.y && n.z < blocks_.z)
-            owners[static_cast<std::size_t>(k)] = &edges(block_at(n));
+    EdgeCodes codes;
+    for (int owner = 0; owner < 8; ++owner) {
+        const Int3 n = b + Int3(owner & 1, (owner >> 1) & 1, owner >> 2);
+        if (n.x == blocks_.x || n.y == blocks_.y || n.z == blocks_.z) continue;
+        const BlockEdges& theirs = edges(block_at(n));
+        if (theirs.vertices == 0) continue;
+        for (int z = 0; z < ((owner & 4) ? 1 : kBlock); ++z)
+            for (int y = 0; y < ((owner & 2) ? 1 : kBlock); ++y) codes.add_row(theirs, owner, y, z);
     }
+    const auto& cases = cube_cases();
     for (int z = 0; z < kBlock; ++z)
         for (int y = 0; y < kBlock; ++y) {
             const std::uint32_t here = nine_bits(b.x, kBlock * b.y + y, kBlock * b.z + z);
@@ -133,14 +183,8 @@ void BlockGrid::write_triangles(std::int64_t block, std::uint16_t* corner) const
             for (std::uint32_t cut = cut_cubes(here, next, above, next_above); cut != 0; cut &= cut - 1) {
                 const int x = __builtin_ctz(cut);
                 const CubeCase& c = cases[case_of(here, next, above, next_above, x)];
-                for (std::size_t k = 0; k < 3u * c.triangles; ++k) {
-                    const int edge = c.edge[k];
-                    const Int3 p = Int3(x, y, z) + edge_corner(edge);
-                    const int owner = (p.x >> 3) | ((p.y >> 3) << 1) | ((p.z >> 3) << 2);
-                    const int place = owners[static_cast<std::size_t>(owner)]->place(edge / 4, p.x & 7,
-                                                                                     kBlock * (p.z & 7) + (p.y & 7));
-                    *corner++ = CornerCode::make(owner, place);
-                }
+                const std::uint16_t* code = &codes.code[static_cast<std::size_t>(EdgeCodes::at(x, y, z, 0))];
+                for (std::size_t k = 0; k < 3u * c.triangles; ++k) *corner++ = code[kEdgeOffsets[c.edge[k]]];
             }
         }
 }

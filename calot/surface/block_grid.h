@@ -31,11 +31,6 @@ struct BlockEdges {
     std::array<std::uint16_t, 64> before{};  ///< vertices in the rows before
     std::uint16_t vertices = 0;
     std::uint16_t triangles = 0;
-
-    int place(int axis, int x, int row) const {
-        const auto r = static_cast<std::size_t>(row);
-        return before[r] + __builtin_popcount(cut[r] & ((1u << (8 * axis + x)) - 1u));
-    }
 };
 
 /// A corner of a triangle in a block: the block that owns the vertex (bit k: one further along axis k), and its place.

@@ -7,24 +7,44 @@ namespace calot::surface {
 
 namespace {
 
-/// Weights of a row at squared distance `d2` from the point, for every pattern of its seven bits:
-/// sum W + 2^32 sum W dx, so that one addition adds both.
+/// Four sums in one word, so that one addition adds all. From the low bits up: slope weight, field weight (never
+/// negative), slope weight * dx, field weight * dx.
+constexpr int kSlopeBits = 14, kFieldBits = 18, kSlopeMomentBits = 14;
+constexpr int kSlopeMomentShift = kSlopeBits + kFieldBits, kFieldMomentShift = kSlopeMomentShift + kSlopeMomentBits;
+
+struct Unpacked {
+    int slope, field, slope_x, field_x;
+};
+constexpr Unpacked unpack(std::int64_t sum) {
+    Unpacked u{};
+    u.slope = static_cast<int>(sum & ((1 << kSlopeBits) - 1));
+    u.field = static_cast<int>((sum >> kSlopeBits) & ((1 << kFieldBits) - 1));
+    sum >>= kSlopeMomentShift;
+    constexpr int kHalf = 1 << (kSlopeMomentBits - 1);
+    u.slope_x = static_cast<int>((sum & (2 * kHalf - 1)) ^ kHalf) - kHalf;  // sign of the field's top bit
+    u.field_x = static_cast<int>((sum - u.slope_x) >> kSlopeMomentBits);
+    return u;
+}
+
+/// Sums of a row at squared distance kRowDistances[k] from the point, for every pattern of its seven bits.
 using RowTable = std::array<std::int64_t, 128>;
 constexpr std::array<int, 8> kRowDistances{0, 1, 2, 4, 5, 8, 9, 10};
 
-constexpr std::array<RowTable, 8> make_tables(int (*weight)(int)) {
+constexpr std::array<RowTable, 8> make_tables() {
     std::array<RowTable, 8> tables{};
     for (std::size_t k = 0; k < kRowDistances.size(); ++k)
         for (std::size_t bits = 0; bits < 128; ++bits)
             for (int dx = -kReach; dx <= kReach; ++dx)
                 if ((bits >> (dx + kReach)) & 1u) {
-                    const std::int64_t w = weight(kRowDistances[k] + dx * dx);
-                    tables[k][bits] += w + (w * dx) * (std::int64_t{1} << 32);
+                    const int d2 = kRowDistances[k] + dx * dx;
+                    const std::int64_t slope = slope_weight(d2), field = field_weight(d2);
+                    tables[k][bits] += slope + field * (std::int64_t{1} << kSlopeBits) +
+                                       slope * dx * (std::int64_t{1} << kSlopeMomentShift) +
+                                       field * dx * (std::int64_t{1} << kFieldMomentShift);
                 }
     return tables;
 }
-constexpr std::array<RowTable, 8> kFieldTables = make_tables(field_weight);
-constexpr std::array<RowTable, 8> kSlopeTables = make_tables(slope_weight);
+constexpr std::array<RowTable, 8> kTables = make_tables();
 
 constexpr int table_of(int d2) {
     for (int k = 0; k < 8; ++k)
@@ -32,71 +52,76 @@ constexpr int table_of(int d2) {
     return -1;
 }
 
-int low_part(std::int64_t sum) {
-    return static_cast<int>(static_cast<std::uint32_t>(sum));
+/// The largest sums are those of the half and of the whole neighbourhood.
+constexpr bool sums_fit() {
+    int slope = 0, field = 0, slope_x = 0, field_x = 0;
+    for (int dz = -kReach; dz <= kReach; ++dz)
+        for (int dy = -kReach; dy <= kReach; ++dy)
+            for (int dx = -kReach; dx <= kReach; ++dx) {
+                const int d2 = dx * dx + dy * dy + dz * dz;
+                slope += slope_weight(d2);
+                field += field_weight(d2);
+                if (dx > 0) slope_x += dx * slope_weight(d2), field_x += dx * field_weight(d2);
+            }
+    return slope < (1 << kSlopeBits) && field < (1 << kFieldBits) && slope_x < (1 << (kSlopeMomentBits - 1)) &&
+           field_x < (1 << (63 - kFieldMomentShift));
 }
-int high_part(std::int64_t sum) {
-    return static_cast<int>((sum - low_part(sum)) >> 32);
-}
+static_assert(sums_fit());
 
-/// Sums of packed rows by dy and by dz.
+/// Packed sums of rows by dy and by dz.
 struct Sums {
     std::array<std::int64_t, 7> by_y{}, by_z{};
 
-    void add(int dy, int dz, std::int64_t row) {
-        by_y[static_cast<std::size_t>(dy + kReach)] += row;
-        by_z[static_cast<std::size_t>(dz + kReach)] += row;
+    template <int dy, int dz>
+    void add_row(const std::uint32_t* centre, int x) {
+        constexpr int k = table_of(dy * dy + dz * dz);
+        if constexpr (k >= 0) {
+            const std::int64_t row = kTables[k][(centre[dz * Window::kRows + dy] >> x) & 127u];
+            by_y[static_cast<std::size_t>(dy + kReach)] += row;
+            by_z[static_cast<std::size_t>(dz + kReach)] += row;
+        }
     }
-    std::int64_t total() const {
-        std::int64_t sum = 0;
-        for (std::int64_t s : by_z) sum += s;
-        return sum;
+    template <int dz>
+    void add_plane(const std::uint32_t* centre, int x) {
+        add_row<-3, dz>(centre, x);
+        add_row<-2, dz>(centre, x);
+        add_row<-1, dz>(centre, x);
+        add_row<0, dz>(centre, x);
+        add_row<1, dz>(centre, x);
+        add_row<2, dz>(centre, x);
+        add_row<3, dz>(centre, x);
     }
-    Int3 first_moment() const {
-        Int3 m(high_part(total()), 0, 0);
+    Moments moments() const {
+        std::int64_t all = 0;
+        for (std::int64_t sum : by_z) all += sum;
+        const Unpacked total = unpack(all);
+        Moments m{total.field, Int3(total.field_x, 0, 0), Int3(total.slope_x, 0, 0)};
         for (int d = 1; d <= kReach; ++d) {
             const auto up = static_cast<std::size_t>(kReach + d), down = static_cast<std::size_t>(kReach - d);
-            m.y += d * (low_part(by_y[up]) - low_part(by_y[down]));
-            m.z += d * (low_part(by_z[up]) - low_part(by_z[down]));
+            const Unpacked y_up = unpack(by_y[up]), y_down = unpack(by_y[down]), z_up = unpack(by_z[up]),
+                           z_down = unpack(by_z[down]);
+            m.mean.y += d * (y_up.field - y_down.field);
+            m.mean.z += d * (z_up.field - z_down.field);
+            m.slope.y += d * (y_up.slope - y_down.slope);
+            m.slope.z += d * (z_up.slope - z_down.slope);
         }
         return m;
     }
 };
 
-template <int dy, int dz>
-inline void add_row(const std::uint32_t* centre, int x, Sums& field, Sums& slope) {
-    constexpr int k = table_of(dy * dy + dz * dz);
-    if constexpr (k >= 0) {
-        const std::uint32_t bits = (centre[dz * Window::kRows + dy] >> x) & 127u;
-        slope.add(dy, dz, kSlopeTables[k][bits]);
-        if constexpr (dy * dy + dz * dz <= 5) field.add(dy, dz, kFieldTables[k][bits]);
-    }
-}
-
-template <int dz>
-inline void add_plane(const std::uint32_t* centre, int x, Sums& field, Sums& slope) {
-    add_row<-3, dz>(centre, x, field, slope);
-    add_row<-2, dz>(centre, x, field, slope);
-    add_row<-1, dz>(centre, x, field, slope);
-    add_row<0, dz>(centre, x, field, slope);
-    add_row<1, dz>(centre, x, field, slope);
-    add_row<2, dz>(centre, x, field, slope);
-    add_row<3, dz>(centre, x, field, slope);
-}
-
 }  // namespace
 
 Moments moments_at(const Window& window, int x, int y, int z) {
     const std::uint32_t* centre = &window.rows[static_cast<std::size_t>((z + kReach) * Window::kRows + y + kReach)];
-    Sums field, slope;
-    add_plane<-3>(centre, x, field, slope);
-    add_plane<-2>(centre, x, field, slope);
-    add_plane<-1>(centre, x, field, slope);
-    add_plane<0>(centre, x, field, slope);
-    add_plane<1>(centre, x, field, slope);
-    add_plane<2>(centre, x, field, slope);
-    add_plane<3>(centre, x, field, slope);
-    return {low_part(field.total()), field.first_moment(), slope.first_moment()};
+    Sums sums;
+    sums.add_plane<-3>(centre, x);
+    sums.add_plane<-2>(centre, x);
+    sums.add_plane<-1>(centre, x);
+    sums.add_plane<0>(centre, x);
+    sums.add_plane<1>(centre, x);
+    sums.add_plane<2>(centre, x);
+    sums.add_plane<3>(centre, x);
+    return sums.moments();
 }
 
 Moments moments_at_reference(const Window& window, int x, int y, int z) {

@@ -19,8 +19,8 @@
 //   - Normals are the gradient of a filled share with R = 3.5 L: sum W d is, but for a factor, the gradient of the
 //     same sum with the exponent 4.
 //
-// Weights are integers ((4 R^2/L^2 - 4 d^2)^3 for whole offsets d), so that sums are exact in any order. A row of seven
-// presence bits is an index into a table of its weights: 37 look-ups a point instead of 179 neighbours.
+// Weights are integers, so that sums are exact in any order. A row of seven presence bits is an index into a table of
+// its weights and first moments, all four sums in one word: 37 look-ups a point instead of 179 neighbours.
 
 #include <array>
 #include <cstdint>
@@ -32,12 +32,13 @@ namespace calot::surface {
 inline constexpr int kReach = 3;             ///< whole offsets within the wider R: 3 along each axis
 inline constexpr float kLeastValue = 0.05f;  ///< |v| >= this, in L
 
-/// Weight of the field's kernel (R = 2.5 L) and of the normals' (R = 3.5 L) at a squared distance in L^2.
+/// Weight of the field's kernel (R = 2.5 L) and of the normals' (R = 3.5 L) at a squared distance in L^2. The latter is
+/// coarser, so that all sums fit one word; its outermost shells, 0.001 and less, fall away.
 constexpr int field_weight(int d2) {
     return d2 <= 6 ? (25 - 4 * d2) * (25 - 4 * d2) * (25 - 4 * d2) : 0;
 }
 constexpr int slope_weight(int d2) {
-    return d2 <= 12 ? (49 - 4 * d2) * (49 - 4 * d2) * (49 - 4 * d2) : 0;
+    return d2 <= 12 ? (49 - 4 * d2) * (49 - 4 * d2) * (49 - 4 * d2) / 240 : 0;
 }
 inline constexpr int kFullFieldWeight = 155121;  ///< sum of field_weight over all offsets
 

@@ -172,7 +172,11 @@ void Surface::Impl::write_vertices(std::int64_t block) {
     Window window;
     grid.load(block, window);
     PointValues values(window);
-    const Int3 low = kBlock * grid.block_coordinates(block);
+    const Int3 low = kBlock * grid.block_coordinates(block), axes(grid.axis(0), grid.axis(1), grid.axis(2));
+    const auto step_m = static_cast<float>(spacing_m);
+    std::array<Vec3f, Window::kEdge> line_m;  // places of points along the axes
+    for (int k = 0; k < Window::kEdge; ++k)
+        line_m[static_cast<std::size_t>(k)] = Vec3f(origin_m + spacing_m * Vec3(low + k));
     std::size_t vertex = vertex_range[static_cast<std::size_t>(block)].offset;
     for (int row = 0; row < kBlock * kBlock; ++row)
         for (std::uint32_t cut = edges.cut[static_cast<std::size_t>(row)]; cut != 0; cut &= cut - 1, ++vertex) {
@@ -180,7 +184,7 @@ void Surface::Impl::write_vertices(std::int64_t block) {
             const Int3 p(bit & 7, row & 7, row >> 3);
             Int3 q = p;
             ++q[axis];
-            const auto a = values.at(p), b = values.at(q);
+            const PointValues::Value &a = values.at(p), &b = values.at(q);
             const float t = a.v / (a.v - b.v);
             // Out of the tissue; at least not into it, where walls face each other across a gap.
             Vec3f n = -((1.0f - t) * a.slope + t * b.slope);
@@ -191,12 +195,16 @@ void Surface::Impl::write_vertices(std::int64_t block) {
                 n /= length;
             else
                 n[axis] = outward;
-            Vec3 place = Vec3(low + p);
-            place[axis] += double{t};
+            Vec3f place_m(line_m[static_cast<std::size_t>(p.x)].x, line_m[static_cast<std::size_t>(p.y)].y,
+                          line_m[static_cast<std::size_t>(p.z)].z);
+            place_m[axis] += step_m * t;
+            Vec3f place_out_m, n_out;
             for (int k = 0; k < 3; ++k) {
-                position_m[vertex][grid.axis(k)] = static_cast<float>(origin_m[k] + spacing_m * place[k]);
-                normal[vertex][grid.axis(k)] = n[k];
+                place_out_m[axes[k]] = place_m[k];
+                n_out[axes[k]] = n[k];
             }
+            position_m[vertex] = place_out_m;
+            normal[vertex] = n_out;
             owner[vertex] = grid.hexel_of(low + (a.v < 0.0f ? p : q));
         }
 }
