@@ -68,10 +68,17 @@ void BlockGrid::load(std::int64_t block, Window& window) const {
             std::memcpy(&window.row(y, z), row(kBlock * b.y + y, kBlock * b.z + z) + b.x, sizeof(std::uint32_t));
 }
 
-std::uint32_t BlockGrid::nine_bits(int bx, int y, int z) const {
-    std::uint16_t bits;
-    std::memcpy(&bits, row(y, z) + bx, sizeof(bits));
-    return (static_cast<std::uint32_t>(bits) >> kReach) & 0x1ffu;
+BlockGrid::CornerRows BlockGrid::corner_rows(const Int3& b) const {
+    CornerRows rows;
+    for (int z = 0; z <= kBlock; ++z) {
+        const std::uint8_t* from = row(kBlock * b.y, kBlock * b.z + z) + b.x;
+        for (int y = 0; y <= kBlock; ++y, from += row_bytes_) {
+            std::uint16_t bits;
+            std::memcpy(&bits, from, sizeof(bits));
+            rows[static_cast<std::size_t>(9 * z + y)] = (std::uint32_t{bits} >> kReach) & 0x1ffu;
+        }
+    }
+    return rows;
 }
 
 namespace {
@@ -137,33 +144,35 @@ std::size_t case_of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint
 }  // namespace
 
 void BlockGrid::find_edges(std::int64_t block) {
-    const Int3 b = block_coordinates(block);
     BlockEdges& edges = edges_[static_cast<std::size_t>(block)];
+    const CornerRows rows = corner_rows(block_coordinates(block));
+    std::uint32_t any = 0, all = 0x1ffu;
+    for (std::uint32_t r : rows) any |= r, all &= r;
+    if (any == 0 || all == 0x1ffu) {
+        edges = {};
+        return;
+    }
     const auto& cases = cube_cases();
     int vertices = 0, triangles = 0;
-    for (int z = 0; z < kBlock; ++z) {
-        std::uint32_t here = nine_bits(b.x, kBlock * b.y, kBlock * b.z + z);
-        std::uint32_t above = nine_bits(b.x, kBlock * b.y, kBlock * b.z + z + 1);
-        for (int y = 0; y < kBlock; ++y) {
-            const std::uint32_t next = nine_bits(b.x, kBlock * b.y + y + 1, kBlock * b.z + z);
-            const std::uint32_t next_above = nine_bits(b.x, kBlock * b.y + y + 1, kBlock * b.z + z + 1);
-            const auto r = static_cast<std::size_t>(kBlock * z + y);
+    for (std::size_t z = 0; z < kBlock; ++z)
+        for (std::size_t y = 0; y < kBlock; ++y) {
+            const std::uint32_t here = rows[9 * z + y], next = rows[9 * z + y + 1], above = rows[9 * z + y + 9],
+                                next_above = rows[9 * z + y + 10];
+            const std::size_t r = kBlock * z + y;
             edges.cut[r] =
                 ((here ^ (here >> 1)) & 0xffu) | (((here ^ next) & 0xffu) << 8) | (((here ^ above) & 0xffu) << 16);
             edges.before[r] = static_cast<std::uint16_t>(vertices);
             vertices += count_bits(edges.cut[r]);
             for (std::uint32_t cut = cut_cubes(here, next, above, next_above); cut != 0; cut &= cut - 1)
                 triangles += cases[case_of(here, next, above, next_above, __builtin_ctz(cut))].triangles;
-            here = next;
-            above = next_above;
         }
-    }
     edges.vertices = static_cast<std::uint16_t>(vertices);
     edges.triangles = static_cast<std::uint16_t>(triangles);
 }
 
 void BlockGrid::write_triangles(std::int64_t block, std::uint16_t* corner) const {
     const Int3 b = block_coordinates(block);
+    const CornerRows rows = corner_rows(b);
     EdgeCodes codes;
     for (int owner = 0; owner < 8; ++owner) {
         const Int3 n = b + Int3(owner & 1, (owner >> 1) & 1, owner >> 2);
@@ -176,10 +185,8 @@ void BlockGrid::write_triangles(std::int64_t block, std::uint16_t* corner) const
     const auto& cases = cube_cases();
     for (int z = 0; z < kBlock; ++z)
         for (int y = 0; y < kBlock; ++y) {
-            const std::uint32_t here = nine_bits(b.x, kBlock * b.y + y, kBlock * b.z + z);
-            const std::uint32_t next = nine_bits(b.x, kBlock * b.y + y + 1, kBlock * b.z + z);
-            const std::uint32_t above = nine_bits(b.x, kBlock * b.y + y, kBlock * b.z + z + 1);
-            const std::uint32_t next_above = nine_bits(b.x, kBlock * b.y + y + 1, kBlock * b.z + z + 1);
+            const auto r = static_cast<std::size_t>(9 * z + y);
+            const std::uint32_t here = rows[r], next = rows[r + 1], above = rows[r + 9], next_above = rows[r + 10];
             for (std::uint32_t cut = cut_cubes(here, next, above, next_above); cut != 0; cut &= cut - 1) {
                 const int x = __builtin_ctz(cut);
                 const CubeCase& c = cases[case_of(here, next, above, next_above, x)];

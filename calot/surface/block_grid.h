@@ -85,8 +85,9 @@ class BlockGrid {
     const std::uint8_t* row(int y, int z) const {
         return &bits_[row_bytes_ * (std::int64_t{z + kReach} * rows_y_ + y + kReach)];
     }
-    /// Nine bits: points 8 bx .. 8 bx + 8 of a row.
-    std::uint32_t nine_bits(int bx, int y, int z) const;
+    /// Rows of a block's cubes: bits of points 0 .. 8, [9 z + y].
+    using CornerRows = std::array<std::uint32_t, 81>;
+    CornerRows corner_rows(const Int3& block) const;
 
     std::array<int, 3> axes_{};
     Int3 size_{0};    ///< hexels along the inner axes

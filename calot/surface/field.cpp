@@ -64,54 +64,64 @@ constexpr bool sums_fit() {
                 if (dx > 0) slope_x += dx * slope_weight(d2), field_x += dx * field_weight(d2);
             }
     return slope < (1 << kSlopeBits) && field < (1 << kFieldBits) && slope_x < (1 << (kSlopeMomentBits - 1)) &&
-           field_x < (1 << (63 - kFieldMomentShift));
+           field_x < (1 << (63 - kFieldMomentShift)) && field_x < (1 << (kFieldBits - 1));
 }
 static_assert(sums_fit());
 
-/// Packed sums of rows by dy and by dz.
+/// Packed sums over rows: of all, and weighted by dy and dz. Weighted ones are small enough to be unpacked as signed.
 struct Sums {
-    std::array<std::int64_t, 7> by_y{}, by_z{};
+    std::int64_t all = 0, by_z = 0;
+    std::array<std::int64_t, kReach + 1> across{};  ///< rows at +dy less those at -dy
 
     template <int dy, int dz>
-    void add_row(const std::uint32_t* centre, int x) {
+    std::int64_t row(const std::uint32_t* centre, int x) {
         constexpr int k = table_of(dy * dy + dz * dz);
-        if constexpr (k >= 0) {
-            const std::int64_t row = kTables[k][(centre[dz * Window::kRows + dy] >> x) & 127u];
-            by_y[static_cast<std::size_t>(dy + kReach)] += row;
-            by_z[static_cast<std::size_t>(dz + kReach)] += row;
-        }
+        if constexpr (k < 0)
+            return 0;
+        else
+            return kTables[k][(centre[dz * Window::kRows + dy] >> x) & 127u];
+    }
+    template <int d, int dz>
+    std::int64_t row_pair(const std::uint32_t* centre, int x) {
+        const std::int64_t up = row<d, dz>(centre, x), down = row<-d, dz>(centre, x);
+        across[d] += up - down;
+        return up + down;
     }
     template <int dz>
     void add_plane(const std::uint32_t* centre, int x) {
-        add_row<-3, dz>(centre, x);
-        add_row<-2, dz>(centre, x);
-        add_row<-1, dz>(centre, x);
-        add_row<0, dz>(centre, x);
-        add_row<1, dz>(centre, x);
-        add_row<2, dz>(centre, x);
-        add_row<3, dz>(centre, x);
-    }
-    Moments moments() const {
-        std::int64_t all = 0;
-        for (std::int64_t sum : by_z) all += sum;
-        const Unpacked total = unpack(all);
-        Moments m{total.field, Int3(total.field_x, 0, 0), Int3(total.slope_x, 0, 0)};
-        for (int d = 1; d <= kReach; ++d) {
-            const auto up = static_cast<std::size_t>(kReach + d), down = static_cast<std::size_t>(kReach - d);
-            const Unpacked y_up = unpack(by_y[up]), y_down = unpack(by_y[down]), z_up = unpack(by_z[up]),
-                           z_down = unpack(by_z[down]);
-            m.mean.y += d * (y_up.field - y_down.field);
-            m.mean.z += d * (z_up.field - z_down.field);
-            m.slope.y += d * (y_up.slope - y_down.slope);
-            m.slope.z += d * (z_up.slope - z_down.slope);
-        }
-        return m;
+        const std::int64_t plane = row<0, dz>(centre, x) + row_pair<1, dz>(centre, x) + row_pair<2, dz>(centre, x) +
+                                   row_pair<3, dz>(centre, x);
+        all += plane;
+        by_z += dz * plane;
     }
 };
 
+/// Slope and field part of a weighted sum.
+struct SignedPair {
+    int slope, field;
+};
+constexpr SignedPair unpack_signed(std::int64_t sum) {
+    const auto signed_bits = [](std::int64_t word, int bits) {
+        const std::int64_t half = std::int64_t{1} << (bits - 1);
+        return static_cast<int>(((word & (2 * half - 1)) ^ half) - half);
+    };
+    const int slope = signed_bits(sum, kSlopeBits);
+    return {slope, signed_bits((sum - slope) >> kSlopeBits, kFieldBits)};
+}
+
 }  // namespace
 
-Moments moments_at(const Window& window, int x, int y, int z) {
+float field_value(const Moments& m, bool present) {
+    const Vec3f mean(m.mean);
+    const float length = std::sqrt(mean.x * mean.x + mean.y * mean.y + mean.z * mean.z);
+    constexpr float kPerFull = 2.0f / static_cast<float>(kFullFieldWeight);
+    const float share = 1.0f - kPerFull * static_cast<float>(m.weight);
+    if (present) return std::min({share, length / static_cast<float>(m.weight) - 0.5f, -kLeastValue});
+    // Over all offsets sum W d = 0: what is absent has the opposite moment.
+    return std::max({share, 0.5f - length / static_cast<float>(kFullFieldWeight - m.weight), kLeastValue});
+}
+
+inline Moments packed_moments(const Window& window, int x, int y, int z) {
     const std::uint32_t* centre = &window.rows[static_cast<std::size_t>((z + kReach) * Window::kRows + y + kReach)];
     Sums sums;
     sums.add_plane<-3>(centre, x);
@@ -121,7 +131,19 @@ Moments moments_at(const Window& window, int x, int y, int z) {
     sums.add_plane<1>(centre, x);
     sums.add_plane<2>(centre, x);
     sums.add_plane<3>(centre, x);
-    return sums.moments();
+    const Unpacked total = unpack(sums.all);
+    const SignedPair along_y = unpack_signed(sums.across[1] + 2 * sums.across[2] + 3 * sums.across[3]),
+                     along_z = unpack_signed(sums.by_z);
+    return {total.field, {total.field_x, along_y.field, along_z.field}, {total.slope_x, along_y.slope, along_z.slope}};
+}
+
+Moments moments_at(const Window& window, int x, int y, int z) {
+    return packed_moments(window, x, y, z);
+}
+
+PointValue value_at(const Window& window, int x, int y, int z) {
+    const Moments moments = packed_moments(window, x, y, z);
+    return {field_value(moments, window.test(x, y, z)), Vec3f(moments.slope)};
 }
 
 Moments moments_at_reference(const Window& window, int x, int y, int z) {
@@ -136,15 +158,6 @@ Moments moments_at_reference(const Window& window, int x, int y, int z) {
                 m.slope += slope_weight(d2) * Int3(dx, dy, dz);
             }
     return m;
-}
-
-float field_value(const Moments& m, bool present) {
-    const Vec3f mean(m.mean);
-    const float length = std::sqrt(mean.x * mean.x + mean.y * mean.y + mean.z * mean.z);
-    const float share = 1.0f - 2.0f * static_cast<float>(m.weight) / static_cast<float>(kFullFieldWeight);
-    if (present) return std::min({share, length / static_cast<float>(m.weight) - 0.5f, -kLeastValue});
-    // Over all offsets sum W d = 0: what is absent has the opposite moment.
-    return std::max({share, 0.5f - length / static_cast<float>(kFullFieldWeight - m.weight), kLeastValue});
 }
 
 }  // namespace calot::surface

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <bitset>
-#include <cassert>
+#include <cmath>
+#include <type_traits>
 
 #include "calot/base/parallel.h"
 #include "calot/surface/block_grid.h"
@@ -139,19 +140,14 @@ void Surface::Impl::redo_marked() {
 
 namespace {
 
-/// Field and normal at the points of one block, worked out where the surface needs them.
+/// Field and slope at the points of one block, worked out where the surface needs them.
 class PointValues {
   public:
     explicit PointValues(const Window& window) : window_(window) {}
-    struct Value {
-        float v;
-        Vec3f slope;
-    };
-    const Value& at(const Int3& p) {
+    const PointValue& at(const Int3& p) {
         const auto k = static_cast<std::size_t>((p.z * Window::kEdge + p.y) * Window::kEdge + p.x);
         if (!known_[k]) {
-            const Moments moments = moments_at(window_, p.x, p.y, p.z);
-            values_[k] = {field_value(moments, window_.test(p.x, p.y, p.z)), Vec3f(moments.slope)};
+            values_[k] = value_at(window_, p.x, p.y, p.z);
             known_[k] = true;
         }
         return values_[k];
@@ -161,8 +157,32 @@ class PointValues {
     static constexpr std::size_t kPoints = Window::kEdge * Window::kEdge * Window::kEdge;
     const Window& window_;
     std::bitset<kPoints> known_;
-    std::array<Value, kPoints> values_;
+    std::array<PointValue, kPoints> values_;
 };
+
+struct Vertex {
+    Vec3f place_L;  ///< from the lower end of its edge, in L
+    Vec3f normal;
+    bool lower_end_present;
+};
+
+/// The vertex between two neighbours along an axis.
+template <int axis>
+Vertex vertex_between(const PointValue& a, const PointValue& b) {
+    const float t = a.v / (a.v - b.v);
+    // Out of the tissue; at least not into it, where walls face each other across a gap.
+    Vec3f n = -((1.0f - t) * a.slope + t * b.slope);
+    const float outward = a.v < 0.0f ? 1.0f : -1.0f;
+    n[axis] = outward * std::max(outward * n[axis], 0.0f);
+    const float squares = glm::dot(n, n);
+    if (squares > 0.0f)
+        n *= 1.0f / std::sqrt(squares);
+    else
+        n[axis] = outward;
+    Vec3f place_L(0.0f);
+    place_L[axis] = t;
+    return {place_L, n, a.v < 0.0f};
+}
 
 }  // namespace
 
@@ -174,39 +194,29 @@ void Surface::Impl::write_vertices(std::int64_t block) {
     PointValues values(window);
     const Int3 low = kBlock * grid.block_coordinates(block), axes(grid.axis(0), grid.axis(1), grid.axis(2));
     const auto step_m = static_cast<float>(spacing_m);
-    std::array<Vec3f, Window::kEdge> line_m;  // places of points along the axes
-    for (int k = 0; k < Window::kEdge; ++k)
-        line_m[static_cast<std::size_t>(k)] = Vec3f(origin_m + spacing_m * Vec3(low + k));
     std::size_t vertex = vertex_range[static_cast<std::size_t>(block)].offset;
-    for (int row = 0; row < kBlock * kBlock; ++row)
-        for (std::uint32_t cut = edges.cut[static_cast<std::size_t>(row)]; cut != 0; cut &= cut - 1, ++vertex) {
-            const int bit = __builtin_ctz(cut), axis = bit >> 3;
-            const Int3 p(bit & 7, row & 7, row >> 3);
-            Int3 q = p;
-            ++q[axis];
-            const PointValues::Value &a = values.at(p), &b = values.at(q);
-            const float t = a.v / (a.v - b.v);
-            // Out of the tissue; at least not into it, where walls face each other across a gap.
-            Vec3f n = -((1.0f - t) * a.slope + t * b.slope);
-            const float outward = a.v < 0.0f ? 1.0f : -1.0f;
-            n[axis] = outward * std::max(outward * n[axis], 0.0f);
-            const float length = glm::length(n);
-            if (length > 0.0f)
-                n /= length;
-            else
-                n[axis] = outward;
-            Vec3f place_m(line_m[static_cast<std::size_t>(p.x)].x, line_m[static_cast<std::size_t>(p.y)].y,
-                          line_m[static_cast<std::size_t>(p.z)].z);
-            place_m[axis] += step_m * t;
-            Vec3f place_out_m, n_out;
+
+    auto write_edges = [&]<int axis>(int row, std::integral_constant<int, axis>) {
+        const std::uint32_t line = edges.cut[static_cast<std::size_t>(row)] >> (8 * axis) & 0xffu;
+        for (std::uint32_t cut = line; cut != 0; cut &= cut - 1, ++vertex) {
+            const Int3 p(__builtin_ctz(cut), row & 7, row >> 3), q = p + Int3(axis == 0, axis == 1, axis == 2);
+            const Vertex v = vertex_between<axis>(values.at(p), values.at(q));
+            const Vec3 end_m = origin_m + spacing_m * Vec3(low + p);
+            float* position = &position_m[vertex].x;
+            float* n = &normal[vertex].x;
             for (int k = 0; k < 3; ++k) {
-                place_out_m[axes[k]] = place_m[k];
-                n_out[axes[k]] = n[k];
+                position[axes[k]] = static_cast<float>(end_m[k]) + step_m * v.place_L[k];
+                n[axes[k]] = v.normal[k];
             }
-            position_m[vertex] = place_out_m;
-            normal[vertex] = n_out;
-            owner[vertex] = grid.hexel_of(low + (a.v < 0.0f ? p : q));
+            owner[vertex] = grid.hexel_of(low + (v.lower_end_present ? p : q));
         }
+    };
+    for (int row = 0; row < kBlock * kBlock; ++row) {
+        if (edges.cut[static_cast<std::size_t>(row)] == 0) continue;
+        write_edges(row, std::integral_constant<int, 0>{});
+        write_edges(row, std::integral_constant<int, 1>{});
+        write_edges(row, std::integral_constant<int, 2>{});
+    }
 }
 
 void Surface::Impl::gather() {
