@@ -83,13 +83,6 @@ BlockGrid::CornerRows BlockGrid::corner_rows(const Int3& b) const {
 
 namespace {
 
-/// Set bits of a word. (The builtin is a call where the target has no such instruction.)
-int count_bits(std::uint32_t word) {
-    word -= (word >> 1) & 0x55555555u;
-    word = (word & 0x33333333u) + ((word >> 2) & 0x33333333u);
-    return static_cast<int>((((word + (word >> 4)) & 0x0f0f0f0fu) * 0x01010101u) >> 24);
-}
-
 /// Corner codes of the edges that a block's cubes may have: those that begin at points 0 .. 8 along each axis.
 struct EdgeCodes {
     static constexpr int kEdge = kBlock + 1;
@@ -109,11 +102,10 @@ struct EdgeCodes {
             return;
         }
         // Of blocks further along x, the edges at their lowest points.
-        const std::uint32_t cut = edges.cut[row];
         for (int axis = 1; axis < 3; ++axis)
-            if ((cut >> (8 * axis)) & 1u)
+            if ((edges.cut[row] >> (8 * axis)) & 1u)
                 code[static_cast<std::size_t>(at(kBlock, y_here, z_here, axis))] =
-                    CornerCode::make(owner, edges.before[row] + count_bits(cut & ((1u << (8 * axis)) - 1u)));
+                    CornerCode::make(owner, edges.place(static_cast<int>(row), 8 * axis));
     }
 };
 

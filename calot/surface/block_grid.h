@@ -25,12 +25,25 @@ namespace calot::surface {
 
 inline constexpr int kBlock = 8;
 
+/// Set bits of a word. (The builtin is a call where the target has no such instruction.)
+inline int count_bits(std::uint32_t word) {
+    word -= (word >> 1) & 0x55555555u;
+    word = (word & 0x33333333u) + ((word >> 2) & 0x33333333u);
+    return static_cast<int>((((word + (word >> 4)) & 0x0f0f0f0fu) * 0x01010101u) >> 24);
+}
+
 /// Lattice edges that the surface cuts, as bits: per row of points (8 z + y), bit 8 axis + x.
 struct BlockEdges {
     std::array<std::uint32_t, 64> cut{};
     std::array<std::uint16_t, 64> before{};  ///< vertices in the rows before
     std::uint16_t vertices = 0;
     std::uint16_t triangles = 0;
+
+    /// Place of the vertex of bit `bit` of a row among the block's.
+    int place(int row, int bit) const {
+        const auto r = static_cast<std::size_t>(row);
+        return before[r] + count_bits(cut[r] & ((1u << bit) - 1u));
+    }
 };
 
 /// A corner of a triangle in a block: the block that owns the vertex (bit k: one further along axis k), and its place.

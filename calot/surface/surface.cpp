@@ -24,6 +24,33 @@ void grow(std::vector<T>& array, std::size_t size) {
     if (array.size() < size) array.resize(size);
 }
 
+/// Points of a block (and the next ones) whose field changed, as bits of rows [9 z + y].
+struct ChangedPoints {
+    std::array<std::uint32_t, 81> rows{};
+
+    /// The field changes within reach of a removed hexel. `p` counts from the block's lowest point.
+    void add(const Int3& p) {
+        const Int3 low = glm::max(p - kReach, Int3(0)), high = glm::min(p + kReach, Int3(kBlock));
+        if (low.x > high.x) return;
+        const std::uint32_t line = (2u << high.x) - (1u << low.x);
+        for (int z = low.z; z <= high.z; ++z)
+            for (int y = low.y; y <= high.y; ++y) rows[static_cast<std::size_t>(9 * z + y)] |= line;
+    }
+    /// Of the eight edges along an axis that begin in a row, those with a changed end.
+    std::uint32_t edges(int row, int axis) const {
+        const auto r = static_cast<std::size_t>(9 * (row >> 3) + (row & 7));
+        const std::uint32_t here = rows[r];
+        return (here | (axis == 0 ? here >> 1 : axis == 1 ? rows[r + 1] : rows[r + 9])) & 0xffu;
+    }
+};
+
+/// What a block had before it is redone.
+struct OldBlock {
+    BlockEdges edges;
+    std::array<Vec3f, 3 * kBlock * kBlock * kBlock> position_m, normal;
+    std::array<std::int64_t, 3 * kBlock * kBlock * kBlock> owner;
+};
+
 }  // namespace
 
 struct Surface::Impl {
@@ -37,6 +64,8 @@ struct Surface::Impl {
     std::vector<std::int64_t> owner;
     std::vector<std::uint16_t> corner;  ///< three a triangle, by triangle_range; CornerCode
 
+    OldBlock old;
+    std::vector<Int3> removed;              ///< points
     std::vector<std::uint8_t> redo;         ///< per block
     std::vector<std::int32_t> redo_blocks;  ///< those with redo != 0
 
@@ -53,7 +82,8 @@ struct Surface::Impl {
     void mark(const Int3& low, const Int3& high, std::uint8_t what);
     void redo_marked();
     void fit_ranges(std::int64_t block);
-    void write_vertices(std::int64_t block);
+    void redo_vertices(std::int64_t block);
+    void write_vertices(std::int64_t block, const ChangedPoints* changed);
     void gather();
 };
 
@@ -64,6 +94,7 @@ Surface::Impl::Impl(const tissue::Model& model) : grid(model.hexels), spacing_m(
     triangle_range.resize(blocks);
     redo.assign(blocks, 0);
     redo_blocks.reserve(blocks);
+    removed.reserve(static_cast<std::size_t>(std::min<std::int64_t>(model.hexel_initial.count(), 16384)));
     first_vertex.resize(blocks);
 }
 
@@ -86,7 +117,7 @@ void Surface::Impl::rebuild() {
     grow(corner, 3 * triangles);
     parallel_for("surface.rebuild", 0, blocks, 4, [&](std::int64_t low, std::int64_t high) {
         for (std::int64_t block = low; block < high; ++block) {
-            write_vertices(block);
+            write_vertices(block, nullptr);
             if (grid.edges(block).triangles > 0)
                 grid.write_triangles(block,
                                      &corner[3 * std::size_t{triangle_range[static_cast<std::size_t>(block)].offset}]);
@@ -114,28 +145,44 @@ void Surface::Impl::mark(const Int3& low, const Int3& high, std::uint8_t what) {
             }
 }
 
+/// One thread: some ten blocks of a few microseconds each, and tasks would be allocated.
 void Surface::Impl::redo_marked() {
     for (const std::int32_t block : redo_blocks)
-        if (redo[static_cast<std::size_t>(block)] & kTriangles) {
+        if (redo[static_cast<std::size_t>(block)] & kVertices) redo_vertices(block);
+    for (const std::int32_t block : redo_blocks) {
+        const auto b = static_cast<std::size_t>(block);
+        if ((redo[b] & kTriangles) && !(redo[b] & kVertices)) {
             grid.find_edges(block);
             fit_ranges(block);
         }
+    }
+    grow(corner, 3 * std::size_t{triangle_pool.end()});
+    for (const std::int32_t block : redo_blocks) {
+        const auto b = static_cast<std::size_t>(block);
+        if ((redo[b] & kTriangles) && grid.edges(block).triangles > 0)
+            grid.write_triangles(block, &corner[3 * std::size_t{triangle_range[b].offset}]);
+        redo[b] = 0;
+    }
+    redo_blocks.clear();
+    removed.clear();
+}
+
+/// Only vertices with a changed end are worked out anew.
+void Surface::Impl::redo_vertices(std::int64_t block) {
+    old.edges = grid.edges(block);
+    const std::size_t from = vertex_range[static_cast<std::size_t>(block)].offset;
+    std::copy_n(position_m.begin() + static_cast<std::ptrdiff_t>(from), old.edges.vertices, old.position_m.begin());
+    std::copy_n(normal.begin() + static_cast<std::ptrdiff_t>(from), old.edges.vertices, old.normal.begin());
+    std::copy_n(owner.begin() + static_cast<std::ptrdiff_t>(from), old.edges.vertices, old.owner.begin());
+    ChangedPoints changed;
+    const Int3 low = kBlock * grid.block_coordinates(block);
+    for (const Int3& p : removed) changed.add(p - low);
+    grid.find_edges(block);
+    fit_ranges(block);
     grow(position_m, vertex_pool.end());
     grow(normal, vertex_pool.end());
     grow(owner, vertex_pool.end());
-    grow(corner, 3 * std::size_t{triangle_pool.end()});
-    parallel_for("surface.redo", 0, static_cast<std::int64_t>(redo_blocks.size()), 2,
-                 [&](std::int64_t low, std::int64_t high) {
-                     for (std::int64_t k = low; k < high; ++k) {
-                         const auto block = static_cast<std::size_t>(redo_blocks[static_cast<std::size_t>(k)]);
-                         if (redo[block] & kVertices) write_vertices(static_cast<std::int64_t>(block));
-                         if (redo[block] & kTriangles)
-                             grid.write_triangles(static_cast<std::int64_t>(block),
-                                                  corner.data() + 3 * std::size_t{triangle_range[block].offset});
-                     }
-                 });
-    for (const std::int32_t block : redo_blocks) redo[static_cast<std::size_t>(block)] = 0;
-    redo_blocks.clear();
+    write_vertices(block, &changed);
 }
 
 namespace {
@@ -186,7 +233,8 @@ Vertex vertex_between(const PointValue& a, const PointValue& b) {
 
 }  // namespace
 
-void Surface::Impl::write_vertices(std::int64_t block) {
+/// Without `changed` all vertices, otherwise those with a changed end; the others are taken over from `old`.
+void Surface::Impl::write_vertices(std::int64_t block, const ChangedPoints* changed) {
     const BlockEdges& edges = grid.edges(block);
     if (edges.vertices == 0) return;
     Window window;
@@ -198,8 +246,17 @@ void Surface::Impl::write_vertices(std::int64_t block) {
 
     auto write_edges = [&]<int axis>(int row, std::integral_constant<int, axis>) {
         const std::uint32_t line = edges.cut[static_cast<std::size_t>(row)] >> (8 * axis) & 0xffu;
+        const std::uint32_t kept = changed ? line & ~changed->edges(row, axis) : 0u;
         for (std::uint32_t cut = line; cut != 0; cut &= cut - 1, ++vertex) {
-            const Int3 p(__builtin_ctz(cut), row & 7, row >> 3), q = p + Int3(axis == 0, axis == 1, axis == 2);
+            const int x = __builtin_ctz(cut);
+            if ((kept >> x) & 1u) {
+                const auto k = static_cast<std::size_t>(old.edges.place(row, 8 * axis + x));
+                position_m[vertex] = old.position_m[k];
+                normal[vertex] = old.normal[k];
+                owner[vertex] = old.owner[k];
+                continue;
+            }
+            const Int3 p(x, row & 7, row >> 3), q = p + Int3(axis == 0, axis == 1, axis == 2);
             const Vertex v = vertex_between<axis>(values.at(p), values.at(q));
             const Vec3 end_m = origin_m + spacing_m * Vec3(low + p);
             float* position = &position_m[vertex].x;
@@ -274,6 +331,7 @@ void Surface::update_dirty_blocks(const tissue::Model&, const tissue::State&, co
         const Int3 p = s.grid.point_of(hexel);
         if (!s.grid.test(p)) continue;
         s.grid.clear(p);
+        s.removed.push_back(p);
         // Edges that begin in [p - 1, p] are cut anew: places in their blocks change, and with them the triangles of
         // all blocks that refer there. Vertices with an end of their edge within reach move.
         s.mark(p - 1 - kBlock, p, kTriangles);
