@@ -54,6 +54,8 @@ struct JouleHeat {
     Int3 size{0};                   ///< x fastest in `density`
     Array<float> density_W_per_m3;  ///< [size.x * size.y * size.z], scaled to the present power
     double total_W = 0.0;           ///< sum of density * hexel volume
+    double outflow_W = 0.0;         ///< dissipated outside the tissue's hexels, in held organs and beyond the window;
+                                    ///< the generator delivers total_W + outflow_W
 };
 
 struct Exchange {

@@ -67,7 +67,8 @@ struct State {
 
     // --- Electric field, written by electric: warm start of the next solve
     Int3 field_low{0};                               ///< hexel coordinates of the window's low corner
-    Array<float> potential;                          ///< [window_cells^3] in units of the electrode's voltage
+    Array<float> potential;                          ///< [window_cells^3] in units of the electrode's voltage, axes ordered as
+                                                     ///< in Model::hexels (its fastest axis fastest)
 
     GeneratorState generator;
     EnergyBudget energy_J;
