@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "calot/base/parallel.h"
+#include "calot/base/random.h"
 #include "calot/deformation/carriers.h"
 
 namespace calot::deformation {
@@ -50,41 +51,48 @@ Stencil embedding_stencil(const tissue::Model& model, const tissue::State& state
     return stencil;
 }
 
-// Points of one phyxel share its carriers and their fields, which are gathered once for a run of such points.
+namespace {
+
+/// What the points of one phyxel share. A few are kept: surface vertices come in the order of small blocks of space.
+struct SharedCarriers {
+    std::int64_t phyxel = -1;
+    Vec3f centre_m{0.0f};
+    Carriers carriers;
+    CarrierFields fields;
+};
+constexpr std::size_t kKept = 16;
+
+}  // namespace
+
 void embed_points(const tissue::Model& model, const tissue::State& state, const Work& work,
                   std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner, std::span<Vec3f> world_m,
                   std::span<Mat3f> deformation_gradient) {
     assert(owner.size() == rest_m.size() && world_m.size() == rest_m.size());
     assert(deformation_gradient.empty() || deformation_gradient.size() == rest_m.size());
-    parallel_for("deformation.embed", 0, static_cast<std::int64_t>(rest_m.size()), kPointsPerChunk,
-                 [&](std::int64_t low, std::int64_t high) {
-                     std::int64_t current = -1, current_hexel = -1;
-                     Carriers carriers;
-                     CarrierFields fields;
-                     Vec3f centre_m(0.0f);
-                     std::array<float, kNeighbourhood> weight;
-                     for (auto p = static_cast<std::size_t>(low); p < static_cast<std::size_t>(high); ++p) {
-                         if (owner[p] != current_hexel) {
-                             current_hexel = owner[p];
-                             const std::int64_t phyxel = model.phyxel_of(model.hexels.coordinates(current_hexel));
-                             if (phyxel != current) {
-                                 current = phyxel;
-                                 centre_m = Vec3f(model.phyxels.centre_m(phyxel));
-                                 carriers = find_carriers(model, state, phyxel);
-                                 fields.gather(model, state, work, carriers);
-                             }
-                         }
-                         if (carriers.count == 0) {
-                             world_m[p] = rest_m[p];
-                             if (!deformation_gradient.empty()) deformation_gradient[p] = Mat3f(1.0f);
-                             continue;
-                         }
-                         raw_weights(carriers, relative_to(model, rest_m[p], centre_m), weight);
-                         const auto f = blend(fields, carriers.count, weight.data());
-                         world_m[p] = rest_m[p] + displacement_at(f, rest_m[p] - centre_m);
-                         if (!deformation_gradient.empty()) deformation_gradient[p] = deformation_gradient_of(f);
-                     }
-                 });
+    const auto count = static_cast<std::int64_t>(rest_m.size());
+    parallel_for("deformation.embed", 0, count, kPointsPerChunk, [&](std::int64_t low, std::int64_t high) {
+        std::array<SharedCarriers, kKept> kept;
+        std::array<float, kNeighbourhood> weight;
+        for (auto p = static_cast<std::size_t>(low); p < static_cast<std::size_t>(high); ++p) {
+            const std::int64_t phyxel = model.phyxel_of(model.hexels.coordinates(owner[p]));
+            SharedCarriers& shared = kept[mix64(static_cast<std::uint64_t>(phyxel)) % kKept];
+            if (shared.phyxel != phyxel) {
+                shared.phyxel = phyxel;
+                shared.centre_m = Vec3f(model.phyxels.centre_m(phyxel));
+                shared.carriers = find_carriers(model, state, phyxel);
+                shared.fields.gather(model, state, work, shared.carriers);
+            }
+            if (shared.carriers.count == 0) {
+                world_m[p] = rest_m[p];
+                if (!deformation_gradient.empty()) deformation_gradient[p] = Mat3f(1.0f);
+                continue;
+            }
+            raw_weights(shared.carriers, relative_to(model, rest_m[p], shared.centre_m), weight);
+            const auto f = blend(shared.fields, shared.carriers.count, weight.data());
+            world_m[p] = rest_m[p] + displacement_at(f, rest_m[p] - shared.centre_m);
+            if (!deformation_gradient.empty()) deformation_gradient[p] = deformation_gradient_of(f);
+        }
+    });
 }
 
 void embed_points_reference(const tissue::Model& model, const tissue::State& state, const Work& work,

@@ -49,8 +49,10 @@ struct Capsules {
             high = glm::max(high, glm::max(a, b) + margin);
         }
     }
-    bool box_holds(const Vec3f& p) const {
-        return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
+    /// Whether a point lies in the box, made smaller by `inset_m` on all sides.
+    bool box_holds(const Vec3f& p, float inset_m = 0.0f) const {
+        return p.x >= low.x + inset_m && p.y >= low.y + inset_m && p.z >= low.z + inset_m && p.x <= high.x - inset_m &&
+               p.y <= high.y - inset_m && p.z <= high.z - inset_m;
     }
     float distance(const Vec3f& p) const {
         float nearest = 1e9f;
@@ -135,6 +137,7 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
     fields.gather(model, state, work, carriers);
     const Vec3f centre_m(model.phyxels.centre_m(c));
     const auto half_hexel = static_cast<float>(0.5 * model.hexels.spacing_m);
+    const auto margin_m = static_cast<float>(kPhyxelMargin * model.phyxels.spacing_m);
     for (std::uint64_t rest = openings.surface; rest != 0; rest &= rest - 1) {
         const int bit = __builtin_ctzll(rest);
         const float* table = work.hexel_weight.data() + kNeighbourhood * bit;
@@ -145,7 +148,7 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
         tissue::NearHexel item;
         item.rest_m = Vec3f(model.hexels.centre_m(cell));
         item.world_m = item.rest_m + displacement_at(f, item.rest_m - centre_m);
-        if (!capsules.box_holds(item.world_m)) continue;
+        if (!capsules.box_holds(item.world_m, margin_m)) continue;  // the box reaches that much further
         item.distance_m = capsules.distance(item.world_m);
         if (item.distance_m > reach_m) continue;
         item.hexel = model.hexels.index(cell);

@@ -13,6 +13,7 @@
 #include "calot/anatomy/block.h"
 #include "calot/base/parallel.h"
 #include "calot/base/random.h"
+#include "calot/deformation/embedded_points.h"
 #include "calot/deformation/topology.h"
 #include "calot/tissue/sampling.h"
 
@@ -115,6 +116,39 @@ TEST(Embedding, FastFormAgreesWithItsReference) {
             for (int c = 0; c < 3; ++c) ASSERT_LT(glm::length(F[k][c] - reference_F[k][c]), 2e-6f);
         }
     }
+}
+
+TEST(EmbeddedPoints, AgreeWithTheReference) {
+    for (const double severed : {0.0, 0.3}) {
+        Body body(true);
+        body.displace_at_random();
+        body.sever_at_random(severed);
+        std::vector<Vec3f> world(body.rest_m.size()), reference(body.rest_m.size());
+        std::vector<Mat3f> F(world.size()), reference_F(world.size());
+        EmbeddedPoints points;
+        points.rebuild(body.model, body.state, body.rest_m, body.owner);
+        points.move(body.model, body.state, body.work, world, F);
+        embed_points_reference(body.model, body.state, body.work, body.rest_m, body.owner, reference, reference_F);
+        for (std::size_t k = 0; k < world.size(); ++k) {
+            ASSERT_LT(glm::length(world[k] - reference[k]), kTolerance_m);
+            for (int c = 0; c < 3; ++c) ASSERT_LT(glm::length(F[k][c] - reference_F[k][c]), 2e-6f);
+        }
+    }
+}
+
+TEST(EmbeddedPoints, AreTheSameForAnyNumberOfThreads) {
+    Body body(true);
+    body.displace_at_random();
+    EmbeddedPoints points;
+    points.rebuild(body.model, body.state, body.rest_m, body.owner);
+    std::vector<Vec3f> one(body.rest_m.size()), many(body.rest_m.size());
+    {
+        const ThreadLimit limit(1);
+        points.move(body.model, body.state, body.work, one);
+    }
+    const ThreadLimit limit(3);
+    points.move(body.model, body.state, body.work, many);
+    EXPECT_EQ(0, std::memcmp(one.data(), many.data(), one.size() * sizeof(Vec3f)));
 }
 
 TEST(Embedding, IsTheSameForAnyNumberOfThreads) {
