@@ -1,2 +1,88 @@
+// The program's command line.
+
 #include <cstdio>
-int main() { std::puts("calot"); return 0; }
+#include <exception>
+#include <new>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "calot/base/error.h"
+#include "commands.h"
+
+namespace calot::app {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  calot inspect scenes/calot.toml                       what the scene is made of
+  calot scene --defaults                                every key that a scene may have
+
+Exit codes: 0 done, 2 bad input or usage, 130 interrupted, 1 anything else.)";
+
+void add_scene_options(CLI::App& command, SceneChoice& choice) {
+    command.add_option("scene", choice.path, "Scene file (TOML)")->required()->type_name("SCENE");
+    command.add_option("--duration", choice.duration_s, "Simulated time, instead of the scene's run.duration_s")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.001, 3600.0));
+    command.add_option("--seed", choice.seed, "Another patient, instead of the scene's anatomy.seed")
+        ->type_name("N")
+        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9'000'000'000'000'000'000}));
+    command.add_option("--set", choice.assignments, "Change a value of the scene; may be repeated")
+        ->type_name("KEY.PATH=VALUE")
+        ->allow_extra_args(false);
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Calot simulates electrosurgery on soft tissue in real time.", "calot");
+    app.footer(kExamples);
+    app.require_subcommand(1);
+    int code = kDone;
+
+    InspectOptions inspect_options;
+    CLI::App* inspect_command = app.add_subcommand("inspect", "Say what a scene is made of, without running it");
+    add_scene_options(*inspect_command, inspect_options.scene);
+    inspect_command->add_flag("--json", inspect_options.json, "As JSON");
+    inspect_command->callback([&] { code = inspect(inspect_options); });
+
+    bool defaults = false;
+    CLI::App* scene_command = app.add_subcommand("scene", "About scene files");
+    scene_command
+        ->add_flag("--defaults", defaults, "Print a scene with every key, its default, unit, range and meaning")
+        ->required();
+    scene_command->callback([&] { fmt::print("{}", scene::defaults_text()); });
+
+    CLI::App* version_command = app.add_subcommand("version", "Print the version");
+    version_command->callback([&] { fmt::print("calot {}\n", CALOT_VERSION); });
+    app.set_version_flag("--version", "calot " CALOT_VERSION);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+        fmt::print(stderr, "calot: {}\n  hint: `calot --help` and `calot COMMAND --help` show what there is\n",
+                   error.what());
+        return kBadInput;
+    }
+    return code;
+}
+
+}  // namespace
+}  // namespace calot::app
+
+int main(int argc, char** argv) {
+    using namespace calot;
+    try {
+        const int code = app::run(argc, argv);
+        if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to the standard output");
+        return code;
+    } catch (const InputError& error) {
+        fmt::print(stderr, "calot: {}\n", error.describe());
+        return app::kBadInput;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "calot: there is not enough memory\n");
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "calot: {}\n", error.what());
+    }
+    return app::kFailed;
+}

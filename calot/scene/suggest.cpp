@@ -30,7 +30,10 @@ std::string closest(const std::string& word, const std::vector<std::string>& can
     int best_distance = std::max(2, static_cast<int>(word.size()) / 3) + 1;
     if (word.size() > 200) return best;  // not a slip of the finger
     for (const std::string& candidate : candidates) {
-        const int distance = edit_distance(lower(word), lower(candidate));
+        const std::string here = lower(candidate), there = lower(word);
+        const bool begun =
+            there.size() >= 4 && here.compare(0, there.size(), there) == 0;  // "damping", for "damping_per_s"
+        const int distance = begun ? 1 : edit_distance(there, here);
         // A word whose letters would nearly all have to change was not meant.
         if (distance < best_distance && distance < static_cast<int>(candidate.size())) {
             best_distance = distance;

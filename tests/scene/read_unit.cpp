@@ -38,7 +38,7 @@ TEST(Read, ConvertsUnits) {
     EXPECT_DOUBLE_EQ(scene.thermal.body_temperature_K, 310.15);
     EXPECT_DOUBLE_EQ(scene.materials[1].youngs_modulus_Pa, 5e3);
     EXPECT_DOUBLE_EQ(scene.materials[1].perfusion_m3_per_s_kg, 1e-6);
-    EXPECT_DOUBLE_EQ(scene.script[0].roll_rad, 3.14159265358979);
+    EXPECT_DOUBLE_EQ(scene.script[0].roll_rad, 3.14159265358979323846);
     EXPECT_DOUBLE_EQ(scene.script[0].tip.offset_m.z, 3e-3);
 }
 

@@ -1,0 +1,60 @@
+#pragma once
+// What the program can do: one function a command, each returns the exit code.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calot/scene/scene.h"
+
+namespace calot::app {
+
+enum class FrameKind { none, png, video };
+enum class ProgressKind { automatic, plain, none };
+
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;
+inline constexpr int kBadInput = 2;
+inline constexpr int kInterrupted = 130;
+
+/// A scene file with what the command line changes about it.
+struct SceneChoice {
+    std::string path;
+    std::optional<double> duration_s;
+    std::optional<std::uint64_t> seed;
+    std::vector<std::string> assignments;  ///< key.path=value
+};
+
+/// Throws InputError.
+scene::Scene load_scene(const SceneChoice& choice);
+
+struct OutputChoice {
+    std::string directory;  ///< empty: none
+    FrameKind frames = FrameKind::png;
+    double export_every_s = 1.0;  ///< 0: no surfaces
+    bool force = false;
+    ProgressKind progress = ProgressKind::automatic;
+    int threads = 0;  ///< 0: all cores
+};
+
+struct SimulateOptions {
+    SceneChoice scene;
+    OutputChoice output;
+};
+int simulate(const SimulateOptions& options);
+
+struct InspectOptions {
+    SceneChoice scene;
+    bool json = false;
+};
+int inspect(const InspectOptions& options);
+
+struct ReplayOptions {
+    std::string recording;
+    bool verify = false;
+    OutputChoice output;
+};
+int replay(const ReplayOptions& options);
+
+}  // namespace calot::app

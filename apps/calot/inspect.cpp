@@ -1,0 +1,199 @@
+// What a scene is made of, without running it.
+
+#include <array>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "calot/base/units.h"
+#include "calot/deformation/topology.h"
+#include "commands.h"
+
+namespace calot::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Count {
+    std::int64_t hexels = 0, phyxels = 0, links = 0;
+};
+
+/// The material that most of a phyxel's hexels have; of equals the lower index.
+tissue::MaterialIndex ruling_material(const tissue::Model& model, const tissue::State& state, const Int3& phyxel) {
+    std::array<int, 256> votes{};
+    const int m = model.hexels_per_edge;
+    for (int z = 0; z < m; ++z)
+        for (int y = 0; y < m; ++y)
+            for (int x = 0; x < m; ++x) {
+                const std::int64_t hexel = model.hexels.index(phyxel * m + Int3(x, y, z));
+                if (state.hexel_present.test(hexel)) ++votes[model.hexel_material[static_cast<std::size_t>(hexel)]];
+            }
+    votes[tissue::kNoMaterial] = 0;
+    return static_cast<tissue::MaterialIndex>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+}
+
+/// Slot 0 of the result: links to ghosts, and ghosts among the phyxels.
+std::vector<Count> count(const tissue::Model& model, const tissue::State& state, std::int64_t& mixed_links) {
+    std::vector<Count> counts(model.materials.size());
+    std::vector<tissue::MaterialIndex> ruling(static_cast<std::size_t>(model.phyxels.cells), tissue::kNoMaterial);
+    for (std::int64_t h = model.hexels.first; h < model.hexels.last; ++h)
+        if (state.hexel_present.test(h)) ++counts[model.hexel_material[static_cast<std::size_t>(h)]].hexels;
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
+        if (state.phyxel_present.test(p)) {
+            ruling[static_cast<std::size_t>(p)] = ruling_material(model, state, model.phyxels.coordinates(p));
+            ++counts[ruling[static_cast<std::size_t>(p)]].phyxels;
+        } else if (model.phyxel_ghost.test(p)) {
+            ++counts[0].phyxels;
+        }
+    }
+    for (std::size_t d = 0; d < tissue::kLinkDirections.size(); ++d) {
+        const std::int64_t offset = model.phyxels.offset(tissue::kLinkDirections[d]);
+        for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
+            if (!state.links[d].test(p)) continue;
+            const auto a = ruling[static_cast<std::size_t>(p)], b = ruling[static_cast<std::size_t>(p + offset)];
+            if (a == b)
+                ++counts[a].links;
+            else if (a == tissue::kNoMaterial || b == tissue::kNoMaterial)
+                ++counts[0].links;
+            else
+                ++mixed_links;
+        }
+    }
+    return counts;
+}
+
+std::int64_t state_bytes(tissue::State& state) {
+    std::int64_t bytes = 0;
+    for (const tissue::Field& field : tissue::fields(state)) bytes += static_cast<std::int64_t>(field.bytes);
+    return bytes;
+}
+
+Json describe(const simulation::Setup& setup) {
+    const tissue::Model& model = setup.model;
+    tissue::State state = tissue::State::make(model);
+    const std::int64_t loose = deformation::sever_initial_links(model, state);
+    std::int64_t mixed_links = 0;
+    const std::vector<Count> counts = count(model, state, mixed_links);
+    const double hexel_m3 = model.hexel_volume_m3();
+
+    Json out;
+    out["scene"] = setup.name;
+    out["seed"] = setup.seed;
+    out["duration_s"] = setup.duration_s;
+    out["hexel_spacing_m"] = model.hexels.spacing_m;
+    out["phyxel_spacing_m"] = model.phyxels.spacing_m;
+    out["hexels"] = state.hexel_present.count();
+    out["phyxels"] = state.phyxel_present.count();
+    out["ghost_phyxels"] = counts[0].phyxels;
+    std::int64_t links = mixed_links;
+    for (const Count& c : counts) links += c.links;
+    out["links"] = {{"all", links}, {"between_materials", mixed_links}, {"to_ghosts", counts[0].links}};
+    out["loose_hexels_left_out"] = loose;
+    double volume = 0.0, mass = 0.0;
+    Json materials = Json::array();
+    for (std::size_t k = 1; k < counts.size(); ++k) {
+        if (counts[k].hexels == 0) continue;
+        const double v = static_cast<double>(counts[k].hexels) * hexel_m3, m = v * model.materials[k].density_kg_per_m3;
+        volume += v;
+        mass += m;
+        materials.push_back({{"name", model.materials[k].name},
+                             {"hexels", counts[k].hexels},
+                             {"phyxels", counts[k].phyxels},
+                             {"links", counts[k].links},
+                             {"volume_m3", v},
+                             {"mass_kg", m},
+                             {"source", model.materials[k].source}});
+    }
+    out["materials"] = materials;
+    out["volume_m3"] = volume;
+    out["mass_kg"] = mass;
+    out["added_mass_kg"] = model.added_mass_kg;
+    out["time_steps"] = {{"tick_s", model.tick_s},
+                         {"deformation_s", model.tick_s / model.deformation.substeps},
+                         {"deformation_substeps", model.deformation.substeps},
+                         {"electric_s", model.tick_s * model.electric.refresh_ticks},
+                         {"thermal_s", model.tick_s * model.thermal.refresh_ticks}};
+    out["lattice_cells"] = {{"hexels", model.hexels.cells}, {"phyxels", model.phyxels.cells}};
+    out["memory_bytes"] = {{"state", state_bytes(state)},
+                           {"limit_of_lattices", scene::memory_bytes(model.hexels.cells, model.phyxels.cells)}};
+    Json organs = Json::array();
+    for (const auto& organ : model.organs)
+        organs.push_back({{"name", organ.name}, {"holds_tissue", organ.holds_tissue}});
+    out["organs"] = organs;
+    Json facts = Json::object();
+    for (const auto& [name, value] : setup.anatomy.facts) facts[name] = value;
+    out["facts"] = facts;
+    Json landmarks = Json::object();
+    for (const auto& [name, p] : setup.anatomy.landmarks_m) landmarks[name] = {p.x, p.y, p.z};
+    out["landmarks_m"] = landmarks;
+    return out;
+}
+
+/// 147233 -> "147,233"
+std::string grouped(std::int64_t number) {
+    std::string text = fmt::format("{}", number);
+    for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
+    return text;
+}
+
+void print_row(const std::string& label, const std::string& value) {
+    fmt::print("  {:<26}{}\n", label, value);
+}
+
+void print_text(const Json& j) {
+    fmt::print("{}  (seed {}, {:g} s)\n\n", j["scene"].get<std::string>(), j["seed"].get<std::uint64_t>(),
+               j["duration_s"].get<double>());
+    fmt::print("  {:<20}{:>12}{:>10}{:>10}{:>14}{:>12}\n", "tissue", "hexels", "phyxels", "links", "volume ml",
+               "mass g");
+    for (const Json& m : j["materials"])
+        fmt::print("  {:<20}{:>12}{:>10}{:>10}{:>14.3f}{:>12.3f}\n", m["name"].get<std::string>(), grouped(m["hexels"]),
+                   grouped(m["phyxels"]), grouped(m["links"]), m["volume_m3"].get<double>() * 1e6,
+                   m["mass_kg"].get<double>() * 1e3);
+    fmt::print("  {:<20}{:>12}{:>10}{:>10}{:>14.3f}{:>12.3f}\n\n", "all", grouped(j["hexels"]), grouped(j["phyxels"]),
+               grouped(j["links"]["all"]), j["volume_m3"].get<double>() * 1e6, j["mass_kg"].get<double>() * 1e3);
+    print_row("spacing", fmt::format("hexels {:g} mm, phyxels {:g} mm", j["hexel_spacing_m"].get<double>() * 1e3,
+                                     j["phyxel_spacing_m"].get<double>() * 1e3));
+    print_row("links across tissues", grouped(j["links"]["between_materials"]));
+    print_row("held by",
+              fmt::format("{} ghost phyxels, {} links", grouped(j["ghost_phyxels"]), grouped(j["links"]["to_ghosts"])));
+    print_row("loose, left out", fmt::format("{} hexels", grouped(j["loose_hexels_left_out"])));
+    print_row("added mass", fmt::format("{:.3g} g ({:.2g} % of the tissue), to keep stiff tissue stable",
+                                        j["added_mass_kg"].get<double>() * 1e3,
+                                        100.0 * j["added_mass_kg"].get<double>() / j["mass_kg"].get<double>()));
+    const Json& t = j["time_steps"];
+    print_row("time steps", fmt::format("tick {:g} ms, deformation {:.4g} ms, electric {:g} ms, heat {:g} ms",
+                                        t["tick_s"].get<double>() * 1e3, t["deformation_s"].get<double>() * 1e3,
+                                        t["electric_s"].get<double>() * 1e3, t["thermal_s"].get<double>() * 1e3));
+    print_row("lattices", fmt::format("{} cells of hexels, {} of phyxels", grouped(j["lattice_cells"]["hexels"]),
+                                      grouped(j["lattice_cells"]["phyxels"])));
+    print_row("memory", fmt::format("state {:.1f} MB; all at most about {:.1f} MB",
+                                    j["memory_bytes"]["state"].get<double>() / 1e6,
+                                    j["memory_bytes"]["limit_of_lattices"].get<double>() / 1e6));
+    if (!j["organs"].empty()) {
+        std::string organs;
+        for (const Json& organ : j["organs"]) organs += (organs.empty() ? "" : ", ") + organ["name"].get<std::string>();
+        print_row("rigid organs", organs);
+    }
+    if (!j["facts"].empty()) fmt::print("\n  this patient\n");
+    for (const auto& [name, value] : j["facts"].items()) print_row(name, fmt::format("{:.4g}", value.get<double>()));
+    fmt::print("\n  landmarks, mm\n");
+    for (const auto& [name, p] : j["landmarks_m"].items())
+        print_row(name, fmt::format("{:8.2f} {:8.2f} {:8.2f}", p[0].get<double>() * 1e3, p[1].get<double>() * 1e3,
+                                    p[2].get<double>() * 1e3));
+}
+
+}  // namespace
+
+int inspect(const InspectOptions& options) {
+    const simulation::Setup setup = scene::build(load_scene(options.scene));
+    const Json description = describe(setup);
+    if (options.json)
+        fmt::print("{}\n", description.dump(2, ' ', false, Json::error_handler_t::replace));
+    else
+        print_text(description);
+    return kDone;
+}
+
+}  // namespace calot::app
