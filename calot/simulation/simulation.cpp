@@ -47,8 +47,20 @@ void Simulation::world_surface(WorldSurface& out) const {
     const surface::Mesh& mesh = work_.surface.rest_mesh();
     out.position_m.resize(mesh.position_m.size());
     out.deformation_gradient.resize(mesh.position_m.size());
-    deformation::embed_points(setup_->model, state_, work_.deformation, mesh.position_m, work_.surface.owner(),
-                              out.position_m, out.deformation_gradient);
+    // While the surface changes from frame to frame, keeping weights does not pay.
+    const bool changed =
+        vertices_.surface_version != work_.surface.version() || vertices_.links_severed != state_.links_severed;
+    if (changed) {
+        vertices_.surface_version = work_.surface.version();
+        vertices_.links_severed = state_.links_severed;
+        vertices_.kept = false;
+        deformation::embed_points(setup_->model, state_, work_.deformation, mesh.position_m, work_.surface.owner(),
+                                  out.position_m, out.deformation_gradient);
+        return;
+    }
+    if (!vertices_.kept) vertices_.points.rebuild(setup_->model, state_, mesh.position_m, work_.surface.owner());
+    vertices_.kept = true;
+    vertices_.points.move(setup_->model, state_, work_.deformation, out.position_m, out.deformation_gradient);
 }
 
 double Simulation::energy_imbalance() const {

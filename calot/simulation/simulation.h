@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "calot/deformation/embedded_points.h"
 #include "calot/simulation/setup.h"
 #include "calot/simulation/step.h"
 
@@ -36,7 +37,7 @@ class Simulation {
     const surface::Surface& surface() const { return work_.surface; }
     const std::vector<tissue::Capsule>& capsules() const { return work_.exchange.capsules; }
 
-    /// World positions and deformation gradients of Surface::rest_mesh()'s vertices.
+    /// World positions and deformation gradients of Surface::rest_mesh()'s vertices. Not for several threads at once.
     void world_surface(WorldSurface& out) const;
 
     /// delivered - (outflow + gas + surface + perfusion + debris + stored), as a fraction of delivered (0 when none).
@@ -46,6 +47,15 @@ class Simulation {
     std::shared_ptr<const Setup> setup_;
     tissue::State state_;
     Work work_;
+
+    // For world_surface: how vertices hang on phyxels, kept while neither surface nor links change.
+    struct VertexCache {
+        deformation::EmbeddedPoints points;
+        std::uint64_t surface_version = ~std::uint64_t{0};  ///< of the last call
+        std::int64_t links_severed = -1;
+        bool kept = false;  ///< `points` belong to these
+    };
+    mutable VertexCache vertices_;
 };
 
 }  // namespace calot::simulation
