@@ -9,8 +9,9 @@ constexpr double perfusion_from_ml_per_min_kg(double flow) { return flow * 1e-6 
 
 // Mechanics of liver, gallbladder, duct and artery: PMC6925591, Table 1 (E = 3 G). Thermal and electric values: IT'IS
 // tissue database, Gabriel 1996; fat at 400 kHz to 1 MHz: 0.0248-0.0251 S/m (doi 10.1186/s12938-018-0473-9).
-// Dry specific heat, removal temperature and solid latent heat are chosen, not published: dried organic matter has
-// about 1.5 kJ/(kg K), pyrolyses at 250-400 C and takes about 1 MJ/kg to gasify.
+// Dry specific heats follow from those of living tissue, less their water's: (c - f 4187) / (1 - f).
+// Removal temperature and solid latent heat are chosen, not published: dried organic matter pyrolyses at 250-400 C and
+// takes about 1 MJ/kg to gasify.
 constexpr const char* kMechanics = "mechanics: PMC6925591 Table 1; thermal and electric: IT'IS database, Gabriel 1996";
 
 }  // namespace
@@ -26,6 +27,7 @@ std::vector<Material> default_materials() {
     fat.specific_heat_J_per_kgK = 2348.0;
     fat.thermal_conductivity_W_per_mK = 0.21;
     fat.water_mass_fraction = 0.15;
+    fat.dry_specific_heat_J_per_kgK = 2023.5;
     fat.perfusion_m3_per_s_kg = perfusion_from_ml_per_min_kg(33.0);
     fat.electric_conductivity_S_per_m = 0.025;
     fat.source = "E 2-10 kPa, middle of the published range; thermal: IT'IS database; electric: doi 10.1186/s12938-018-0473-9";
@@ -38,6 +40,7 @@ std::vector<Material> default_materials() {
     duct.specific_heat_J_per_kgK = 3700.0;
     duct.thermal_conductivity_W_per_mK = 0.52;
     duct.water_mass_fraction = 0.70;
+    duct.dry_specific_heat_J_per_kgK = 2563.7;
     duct.perfusion_m3_per_s_kg = perfusion_from_ml_per_min_kg(30.0);
     duct.arrhenius_frequency_per_s = 1.606e45;  // collagen
     duct.arrhenius_energy_J_per_mol = 3.06e5;
@@ -52,6 +55,7 @@ std::vector<Material> default_materials() {
     artery.specific_heat_J_per_kgK = 3306.0;
     artery.thermal_conductivity_W_per_mK = 0.46;
     artery.water_mass_fraction = 0.70;
+    artery.dry_specific_heat_J_per_kgK = 1250.3;
     artery.arrhenius_frequency_per_s = 5.6e63;
     artery.arrhenius_energy_J_per_mol = 4.3e5;
     artery.electric_conductivity_S_per_m = 0.32;
@@ -65,6 +69,7 @@ std::vector<Material> default_materials() {
     wall.specific_heat_J_per_kgK = 3716.0;
     wall.thermal_conductivity_W_per_mK = 0.52;
     wall.water_mass_fraction = 0.75;
+    wall.dry_specific_heat_J_per_kgK = 2303.0;
     wall.perfusion_m3_per_s_kg = perfusion_from_ml_per_min_kg(30.0);
     wall.arrhenius_frequency_per_s = 1.606e45;
     wall.arrhenius_energy_J_per_mol = 3.06e5;
@@ -79,6 +84,7 @@ std::vector<Material> default_materials() {
     liver.specific_heat_J_per_kgK = 3540.0;
     liver.thermal_conductivity_W_per_mK = 0.52;
     liver.water_mass_fraction = 0.70;
+    liver.dry_specific_heat_J_per_kgK = 2030.3;
     liver.perfusion_m3_per_s_kg = perfusion_from_ml_per_min_kg(860.0);
     liver.electric_conductivity_S_per_m = 0.15;
     liver.source = kMechanics;

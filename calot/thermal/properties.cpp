@@ -1,0 +1,132 @@
+#include "calot/thermal/properties.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calot/base/units.h"
+
+namespace calot::thermal {
+
+namespace {
+
+/// Explicit Euler obeys the maximum principle while no hexel can give more than it has above its surroundings:
+/// dt (sum over faces of the strongest exchange + perfusion) <= C, with C least when dry. For one material and no
+/// surroundings that is s_h^2 / 6a.
+double longest_step_s(const tissue::Model& model, const Properties& p) {
+    const double s = model.hexels.spacing_m;
+    double strongest = 0.0;
+    for (std::size_t m = 1; m < model.materials.size(); ++m)
+        strongest = std::max(strongest, model.materials[m].thermal_conductivity_W_per_mK);
+    double longest = 1e9;
+    for (std::size_t m = 1; m < model.materials.size(); ++m) {
+        const double own = model.materials[m].thermal_conductivity_W_per_mK;
+        if (own <= 0.0) continue;
+        const double transfer =
+            static_cast<double>(std::max(p.gas_transfer_W_per_m2K[m], p.held_transfer_W_per_m2K[m]));
+        const double face = std::max(2.0 * own * strongest / (own + strongest) / (s * s), transfer / s);
+        const double rate = 6.0 * face + static_cast<double>(p.perfusion_W_per_m3K[m]);
+        longest = std::min(longest, static_cast<double>(p.dry_capacity_J_per_m3K[m]) / rate);
+    }
+    return longest;
+}
+
+/// Two resistances in series: the surroundings' and half a cell's.
+float transfer_W_per_m2K(double surroundings_W_per_m2K, double conductivity_W_per_mK, double spacing_m) {
+    if (conductivity_W_per_mK <= 0.0) return 0.0f;
+    const double h = surroundings_W_per_m2K;
+    return static_cast<float>(h / (1.0 + 0.5 * h * spacing_m / conductivity_W_per_mK));
+}
+
+}  // namespace
+
+PhaseCurve PhaseCurve::make(const tissue::ThermalParameters& thermal, const tissue::Material& material) {
+    const double density = material.density_kg_per_m3, alive = density * material.specific_heat_J_per_kgK;
+    const double water = density * material.water_mass_fraction;
+    const double boils_K = thermal.boiling_temperature_K - thermal.body_temperature_K;
+    PhaseCurve curve;
+    if (thermal.phase_model == tissue::PhaseModel::threshold || water <= 0.0) {
+        curve.dry_capacity_J_per_m3K = static_cast<float>(alive);
+    } else {
+        // Water has no negative capacity: should the solids want more than all, they get all.
+        const double dry = std::min(alive, (density - water) * material.dry_specific_heat_J_per_kgK);
+        curve.dry_capacity_J_per_m3K = static_cast<float>(dry);
+        curve.water_capacity_J_per_kgK = static_cast<float>((alive - dry) / water);
+    }
+    if (thermal.phase_model == tissue::PhaseModel::threshold) {
+        curve.dry_limit_K = static_cast<float>(thermal.threshold_temperature_K - thermal.body_temperature_K);
+        curve.wet_limit_K = curve.dry_limit_K;
+    } else {
+        curve.wet_limit_K = static_cast<float>(boils_K);
+        curve.dry_limit_K =
+            static_cast<float>(std::max(boils_K, material.removal_temperature_K - thermal.body_temperature_K));
+    }
+    return curve;
+}
+
+float PhaseCurve::rise_K(float enthalpy_J_per_m3, float water_kg_per_m3) const {
+    const float capacity = dry_capacity_J_per_m3K + water_kg_per_m3 * water_capacity_J_per_kgK;
+    return std::min(enthalpy_J_per_m3 / capacity, water_kg_per_m3 > 0.0f ? wet_limit_K : dry_limit_K);
+}
+
+Properties Properties::make(const tissue::Model& model) {
+    const tissue::ThermalParameters& thermal = model.thermal;
+    const bool threshold = thermal.phase_model == tissue::PhaseModel::threshold;
+    Properties p;
+    p.wet_limit_K = static_cast<float>(thermal.boiling_temperature_K - thermal.body_temperature_K);
+    p.dry_capacity_J_per_m3K.fill(1.0f);  // "none": any number but zero
+    for (std::size_t m = 1; m < model.materials.size(); ++m) {
+        const tissue::Material& material = model.materials[m];
+        const PhaseCurve curve = PhaseCurve::make(thermal, material);
+        const double density = material.density_kg_per_m3;
+        const double water = density * material.water_mass_fraction, solids = density - water;
+        p.conductivity_W_per_mK[m] = static_cast<float>(material.thermal_conductivity_W_per_mK);
+        const double k = material.thermal_conductivity_W_per_mK, s = model.hexels.spacing_m;
+        p.gas_transfer_W_per_m2K[m] = transfer_W_per_m2K(thermal.gas_transfer_W_per_m2K, k, s);
+        p.held_transfer_W_per_m2K[m] = transfer_W_per_m2K(thermal.held_transfer_W_per_m2K, k, s);
+        p.perfusion_W_per_m3K[m] =
+            static_cast<float>(material.perfusion_m3_per_s_kg * density * thermal.blood_density_kg_per_m3 *
+                               thermal.blood_specific_heat_J_per_kgK);
+        p.dry_capacity_J_per_m3K[m] = curve.dry_capacity_J_per_m3K;
+        p.water_capacity_J_per_kgK[m] = curve.water_capacity_J_per_kgK;
+        p.dry_limit_K[m] = curve.dry_limit_K;
+        p.boil_off_J_per_kg[m] = static_cast<float>(
+            kLatentHeatOfWater_J_per_kg + static_cast<double>(curve.water_capacity_J_per_kgK * curve.wet_limit_K));
+        const double plateau =
+            static_cast<double>(curve.dry_capacity_J_per_m3K) * static_cast<double>(curve.dry_limit_K);
+        p.plateau_J_per_m3[m] = static_cast<float>(plateau);
+        p.spent_J_per_m3[m] = static_cast<float>(
+            plateau + (threshold ? water * kLatentHeatOfWater_J_per_kg : solids * material.solid_latent_heat_J_per_kg));
+        p.water_kg_per_m3[m] = static_cast<float>(water);
+        p.solids_kg_per_m3[m] = static_cast<float>(solids);
+        const double slope =
+            material.arrhenius_energy_J_per_mol / (kGasConstant_J_per_molK * static_cast<double>(kDamageReference_K));
+        const double log_rate = material.arrhenius_frequency_per_s > 0.0
+                                    ? std::log(material.arrhenius_frequency_per_s) - slope
+                                    : -1e4;  // exp() of it is zero
+        p.damage_slope[m] = static_cast<float>(slope);
+        p.damage_log_rate[m] = static_cast<float>(log_rate);
+    }
+    p.longest_step_s = static_cast<float>(thermal::longest_step_s(model, p));
+    return p;
+}
+
+Array<std::uint8_t> group_materials(const tissue::Model& model) {
+    const Lattice& lattice = model.hexels;
+    Array<std::uint8_t> groups(static_cast<std::size_t>(lattice.cells / kGroupCells + 1), tissue::kNoMaterial);
+    for (std::int64_t cell = lattice.first; cell < lattice.last; ++cell) {
+        if (!model.hexel_initial.test(cell)) continue;
+        std::uint8_t& group = groups[static_cast<std::size_t>(cell / kGroupCells)];
+        auto see = [&](std::int64_t other) {
+            const tissue::MaterialIndex material = model.hexel_material[static_cast<std::size_t>(other)];
+            if (group == tissue::kNoMaterial) group = material;
+            if (group != material) group = kMixedGroup;
+        };
+        see(cell);
+        for (int axis = 0; axis < 3; ++axis)
+            for (const std::int64_t other : {cell - lattice.stride[axis], cell + lattice.stride[axis]})
+                if (model.hexel_initial.test(other)) see(other);
+    }
+    return groups;
+}
+
+}  // namespace calot::thermal
