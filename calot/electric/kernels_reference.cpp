@@ -1,0 +1,183 @@
+// The loops of kernels.h, one cell at a time.
+
+#include <algorithm>
+#include <array>
+
+#include "calot/electric/kernels.h"
+
+namespace calot::electric {
+namespace reference {
+
+/// Sixteen partial sums, one per place in a group, added in order at the end.
+struct Sum {
+    std::array<double, kGroup> place{};
+    void add(std::int64_t k, float a, float b) {
+        place[static_cast<std::size_t>(k)] += static_cast<double>(a) * static_cast<double>(b);
+    }
+    double total() const {
+        double sum = 0.0;
+        for (double value : place) sum += value;
+        return sum;
+    }
+};
+
+/// (A z)_i
+float row_times(const Level& level, const float* z, std::int64_t i) {
+    const float *gx = level.g[0].data(), *gy = level.g[1].data(), *gz = level.g[2].data();
+    const std::int64_t row = level.row, plane = level.plane;
+    const float here = z[i];
+    float flow = gx[i] * (here - z[i + 1]) + gx[i - 1] * (here - z[i - 1]);
+    flow = flow + (gy[i] * (here - z[i + row]) + gy[i - row] * (here - z[i - row]));
+    flow = flow + (gz[i] * (here - z[i + plane]) + gz[i - plane] * (here - z[i - plane]));
+    return flow + level.ground[static_cast<std::size_t>(i)] * here;
+}
+
+void gather(const float* conductivity, const std::uint8_t* present, const std::uint8_t* held, std::int64_t first,
+            std::int64_t count, float* out) {
+    for (std::int64_t k = 0; k < count; ++k) {
+        const std::int64_t hexel = first + k;
+        const int conducts = ((present[hexel >> 3] | held[hexel >> 3]) >> (hexel & 7)) & 1;
+        out[k] = conducts ? conductivity[hexel] : 0.0f;
+    }
+}
+
+void faces(Level& level, const float* sigma, std::int64_t begin, std::int64_t end) {
+    const std::array<std::int64_t, 3> step{1, level.row, level.plane};
+    for (std::int64_t i = level.first + begin * kGroup; i < level.first + end * kGroup; ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float here = sigma[i], there = sigma[i + step[axis]];
+            level.g[axis][static_cast<std::size_t>(i)] = (2.0f * here) * there / std::max(here + there, 1e-30f);
+        }
+}
+
+void weights(Level& level, std::int64_t begin, std::int64_t end) {
+    const float *gx = level.g[0].data(), *gy = level.g[1].data(), *gz = level.g[2].data();
+    for (std::int64_t i = level.first + begin * kGroup; i < level.first + end * kGroup; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        float sum = level.ground[at] + (gx[i] + gx[i - 1]);
+        sum = sum + (gy[i] + gy[i - level.row]);
+        sum = sum + (gz[i] + gz[i - level.plane]);
+        level.weight[at] = sum > 0.0f ? kDamping / sum : 0.0f;
+    }
+}
+
+void aggregate(const Level& fine, Level& coarse, int plane) {
+    for (int b = 0; b < coarse.cells; ++b)
+        for (int a = 0; a < coarse.cells; ++a) {
+            const std::int64_t f = fine.index(2 * a, 2 * b, 2 * plane);
+            const auto to = static_cast<std::size_t>(coarse.index(a, b, plane));
+            const float *gx = fine.g[0].data() + f, *gy = fine.g[1].data() + f, *gz = fine.g[2].data() + f;
+            const float* ground = fine.ground.data() + f;
+            const std::int64_t y = fine.row, z = fine.plane;
+            auto four = [&](const float* v, std::int64_t k) { return (v[k] + v[k + y]) + (v[k + z] + v[k + y + z]); };
+            coarse.g[0][to] = four(gx, 1);
+            coarse.g[1][to] = (gy[y] + gy[y + z]) + (gy[y + 1] + gy[y + z + 1]);
+            coarse.g[2][to] = (gz[z] + gz[y + z]) + (gz[z + 1] + gz[y + z + 1]);
+            coarse.ground[to] = four(ground, 0) + four(ground, 1);
+        }
+}
+
+double apply(Level& level, const float* p, std::int64_t begin, std::int64_t end) {
+    Sum sum;
+    for (std::int64_t n = begin; n < end; ++n)
+        for (std::int64_t k = 0; k < kGroup; ++k) {
+            const std::int64_t i = level.groups[static_cast<std::size_t>(n)].at + k;
+            const float value = row_times(level, p, i);
+            level.scratch[static_cast<std::size_t>(i)] = value;
+            sum.add(k, p[i], value);
+        }
+    return sum.total();
+}
+
+double advance(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::int64_t end) {
+    Sum sum;
+    for (std::int64_t n = begin; n < end; ++n)
+        for (std::int64_t k = 0; k < kGroup; ++k) {
+            const auto i = static_cast<std::size_t>(level.groups[static_cast<std::size_t>(n)].at + k);
+            krylov.x[i] = krylov.x[i] + alpha * krylov.p[i];
+            level.right[i] = level.right[i] - alpha * level.scratch[i];
+            level.solution[i] = level.weight[i] * level.right[i];
+            sum.add(k, level.right[i], level.right[i]);
+        }
+    return sum.total();
+}
+
+void direction(const Level& level, Krylov& krylov, float beta, std::int64_t begin, std::int64_t end) {
+    for (std::int64_t n = begin; n < end; ++n)
+        for (std::int64_t k = 0; k < kGroup; ++k) {
+            const auto i = static_cast<std::size_t>(level.groups[static_cast<std::size_t>(n)].at + k);
+            krylov.p[i] = level.scratch[i] + beta * krylov.p[i];
+        }
+}
+
+void residual(Level& level, std::int64_t begin, std::int64_t end) {
+    for (std::int64_t n = begin; n < end; ++n)
+        for (std::int64_t k = 0; k < kGroup; ++k) {
+            const std::int64_t i = level.groups[static_cast<std::size_t>(n)].at + k;
+            const auto at = static_cast<std::size_t>(i);
+            level.scratch[at] = level.right[at] - row_times(level, level.solution.data(), i);
+        }
+}
+
+double smooth(Level& level, std::int64_t begin, std::int64_t end) {
+    Sum sum;
+    for (std::int64_t n = begin; n < end; ++n)
+        for (std::int64_t k = 0; k < kGroup; ++k) {
+            const std::int64_t i = level.groups[static_cast<std::size_t>(n)].at + k;
+            const auto at = static_cast<std::size_t>(i);
+            const float rest = level.right[at] - row_times(level, level.solution.data(), i);
+            level.scratch[at] = level.solution[at] + level.weight[at] * rest;
+            sum.add(k, level.right[at], level.scratch[at]);
+        }
+    return sum.total();
+}
+
+void restrict_residual(const Level& fine, Level& coarse, std::int64_t begin, std::int64_t end) {
+    for (std::int64_t n = begin; n < end; ++n) {
+        const Level::Group& group = coarse.groups[static_cast<std::size_t>(n)];
+        for (std::int64_t k = 0; k < kGroup; ++k) {
+            const float* r = fine.scratch.data() + group.child + 2 * k;
+            const std::int64_t y = fine.row, z = fine.plane;
+            const float even = (r[0] + r[y]) + (r[z] + r[y + z]);
+            const float odd = (r[1] + r[y + 1]) + (r[z + 1] + r[y + z + 1]);
+            const auto i = static_cast<std::size_t>(group.at + k);
+            coarse.right[i] = coarse.weight[i] > 0.0f ? even + odd : 0.0f;
+            coarse.solution[i] = coarse.weight[i] * coarse.right[i];
+        }
+    }
+}
+
+void correct(Level& fine, const Level& coarse, std::int64_t begin, std::int64_t end) {
+    for (std::int64_t n = begin; n < end; ++n) {
+        const Level::Group& group = fine.groups[static_cast<std::size_t>(n)];
+        for (std::int64_t k = 0; k < kGroup; ++k) {
+            float& z = fine.solution[static_cast<std::size_t>(group.at + k)];
+            z = z + kCorrection * coarse.solution[static_cast<std::size_t>(group.parent + k / 2)];
+        }
+    }
+}
+
+void heat(const Level& level, const float* sigma, const float* phi, float* out, std::int64_t begin, std::int64_t end) {
+    const float *gx = level.g[0].data(), *gy = level.g[1].data(), *gz = level.g[2].data();
+    const std::int64_t row = level.row, plane = level.plane;
+    for (std::int64_t i = level.first + begin * kGroup; i < level.first + end * kGroup; ++i) {
+        auto square = [&](float g, float there) {
+            const float flow = g * (phi[i] - there);
+            return flow * flow;
+        };
+        float sum = square(gx[i], phi[i + 1]) + square(gx[i - 1], phi[i - 1]);
+        sum = sum + (square(gy[i], phi[i + row]) + square(gy[i - row], phi[i - row]));
+        sum = sum + (square(gz[i], phi[i + plane]) + square(gz[i - plane], phi[i - plane]));
+        out[i] = sigma[i] > 0.0f ? 0.5f * sum / sigma[i] : 0.0f;
+    }
+}
+
+}  // namespace reference
+
+Kernels reference_kernels() {
+    using namespace reference;
+    return {gather,    faces,    weights, aggregate,         apply,   advance,
+            direction, residual, smooth,  restrict_residual, correct, heat};
+}
+
+}  // namespace calot::electric

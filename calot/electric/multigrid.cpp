@@ -1,0 +1,198 @@
+#include "calot/electric/multigrid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calot/base/parallel.h"
+
+namespace calot::electric {
+
+namespace {
+
+constexpr std::int64_t kChunk = 2048;  ///< groups a task
+constexpr int kCoarsest = 2;           ///< cells along an edge where coarsening ends
+constexpr int kCoarsestSweeps = 4;     ///< even: each pair ends where it began
+
+std::int64_t size(const Level& level) {
+    return static_cast<std::int64_t>(level.groups.size());
+}
+
+void restrict_to(const Kernels& kernels, const Level& fine, Level& coarse) {
+    parallel_for("electric.restrict", 0, size(coarse), kChunk,
+                 [&](std::int64_t b, std::int64_t e) { kernels.restrict_residual(fine, coarse, b, e); });
+}
+void correct(const Kernels& kernels, Level& fine, const Level& coarse) {
+    parallel_for("electric.correct", 0, size(fine), kChunk,
+                 [&](std::int64_t b, std::int64_t e) { kernels.correct(fine, coarse, b, e); });
+}
+void residual(const Kernels& kernels, Level& level) {
+    parallel_for("electric.residual", 0, size(level), kChunk,
+                 [&](std::int64_t b, std::int64_t e) { kernels.residual(level, b, e); });
+}
+double smooth(const Kernels& kernels, Level& level) {
+    return parallel_sum("electric.smooth", 0, size(level), kChunk,
+                        [&](std::int64_t b, std::int64_t e) { return kernels.smooth(level, b, e); });
+}
+
+void list_groups(Level& level) {
+    level.groups.clear();
+    for (int c = 0; c < level.rows; ++c)
+        for (int b = 0; b < level.rows; ++b)
+            for (std::int64_t a = 0; a < level.row; a += kGroup) {
+                const auto at = static_cast<std::size_t>(level.index(static_cast<int>(a), b, c));
+                const float* weight = level.weight.data() + at;
+                if (std::any_of(weight, weight + kGroup, [](float w) { return w > 0.0f; }))
+                    level.groups.push_back({static_cast<std::int32_t>(at), 0, 0});
+            }
+}
+
+/// Where the children and parents of each group lie.
+void relate(Level& level, const Level* finer, const Level* coarser) {
+    for (Level::Group& group : level.groups) {
+        const std::int64_t offset = group.at - level.first;
+        const auto a = static_cast<int>(offset % level.row), b = static_cast<int>(offset % level.plane / level.row),
+                   c = static_cast<int>(offset / level.plane);
+        if (finer != nullptr) group.child = static_cast<std::int32_t>(finer->index(2 * a, 2 * b, 2 * c));
+        if (coarser != nullptr) group.parent = static_cast<std::int32_t>(coarser->index(a / 2, b / 2, c / 2));
+    }
+}
+
+void clear(Array<float>& values) {
+    std::fill(values.begin(), values.end(), 0.0f);
+}
+
+}  // namespace
+
+Level Level::make(int cells) {
+    Level level;
+    level.cells = cells;
+    level.rows = (cells + 1) / 2 * 2;
+    level.row = (level.rows + kGroup - 1) / kGroup * kGroup;
+    level.plane = level.row * level.rows;
+    // Neighbours reach a plane and a vector beyond; restriction and aggregation read up to two groups further.
+    level.first = level.plane + 4 * kGroup;
+    level.length = level.first + level.plane * level.rows + level.plane + 4 * kGroup;
+    const auto length = static_cast<std::size_t>(level.length);
+    for (auto* values : {&level.g[0], &level.g[1], &level.g[2], &level.ground, &level.weight, &level.right,
+                         &level.solution, &level.scratch})
+        values->assign(length, 0.0f);
+    level.groups.reserve(static_cast<std::size_t>(level.group_capacity()));
+    return level;
+}
+
+Multigrid make_multigrid(int cells, const Kernels& kernels) {
+    Multigrid grid;
+    grid.kernels = kernels;
+    grid.levels.push_back(Level::make(cells));
+    while (grid.levels.back().cells > kCoarsest) grid.levels.push_back(Level::make(grid.levels.back().rows / 2));
+    grid.krylov.x.assign(static_cast<std::size_t>(grid.levels[0].length), 0.0f);
+    grid.krylov.p.assign(static_cast<std::size_t>(grid.levels[0].length), 0.0f);
+    return grid;
+}
+
+void build(Multigrid& grid) {
+    const Kernels& kernels = grid.kernels;
+    for (std::size_t l = 0; l < grid.levels.size(); ++l) {
+        Level& level = grid.levels[l];
+        if (l > 0)
+            parallel_for("electric.aggregate", 0, level.cells, 4, [&](std::int64_t low, std::int64_t high) {
+                for (std::int64_t c = low; c < high; ++c)
+                    kernels.aggregate(grid.levels[l - 1], level, static_cast<int>(c));
+            });
+        parallel_for("electric.weights", 0, level.group_capacity(), kChunk,
+                     [&](std::int64_t b, std::int64_t e) { kernels.weights(level, b, e); });
+        list_groups(level);
+    }
+    for (std::size_t l = 0; l < grid.levels.size(); ++l) {
+        Level& level = grid.levels[l];
+        relate(level, l > 0 ? &grid.levels[l - 1] : nullptr,
+               l + 1 < grid.levels.size() ? &grid.levels[l + 1] : nullptr);
+        // Groups that are skipped must read as zero.
+        clear(level.right);
+        clear(level.solution);
+        clear(level.scratch);
+    }
+    clear(grid.krylov.p);
+}
+
+double precondition(Multigrid& grid) {
+    const Kernels& kernels = grid.kernels;
+    std::vector<Level>& levels = grid.levels;
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
+        residual(kernels, levels[l]);
+        restrict_to(kernels, levels[l], levels[l + 1]);
+    }
+    double product = 0.0;
+    for (int sweep = 0; sweep < kCoarsestSweeps; ++sweep) {
+        product = smooth(kernels, levels.back());
+        std::swap(levels.back().solution, levels.back().scratch);
+    }
+    for (std::size_t l = levels.size() - 1; l-- > 0;) {
+        correct(kernels, levels[l], levels[l + 1]);
+        product = smooth(kernels, levels[l]);
+        if (l > 0) std::swap(levels[l].solution, levels[l].scratch);
+    }
+    return product;
+}
+
+namespace {
+
+/// r = b - A x into `right`, with its norm and the first smoothing step.
+void start_from_x(Multigrid& grid, const std::vector<RightEntry>& right) {
+    Level& fine = grid.levels[0];
+    clear(fine.right);
+    for (const RightEntry& entry : right) fine.right[static_cast<std::size_t>(entry.cell)] += entry.value;
+    // |b|^2: several entries may share a cell, whose value is then their sum.
+    grid.right_norm2 = 0.0;
+    for (const RightEntry& entry : right)
+        grid.right_norm2 += static_cast<double>(entry.value) * fine.right[static_cast<std::size_t>(entry.cell)];
+    parallel_sum("electric.apply", 0, size(fine), kChunk,
+                 [&](std::int64_t b, std::int64_t e) { return grid.kernels.apply(fine, grid.krylov.x.data(), b, e); });
+    // x += 0 p, r = b - 1 * A x: the same loop as in the iteration, with p = 0.
+    clear(grid.krylov.p);
+    grid.residual_norm2 = parallel_sum("electric.advance", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
+        return grid.kernels.advance(fine, grid.krylov, 1.0f, b, e);
+    });
+}
+
+}  // namespace
+
+void begin(Multigrid& grid, const std::vector<RightEntry>& right) {
+    grid.iterations = 0;
+    grid.rho = 0.0;
+    start_from_x(grid, right);
+    if (!(grid.residual_norm2 <= grid.right_norm2)) {
+        clear(grid.krylov.x);
+        start_from_x(grid, right);
+    }
+}
+
+bool iterate(Multigrid& grid, int count, double relative_residual) {
+    Level& fine = grid.levels[0];
+    const Kernels& kernels = grid.kernels;
+    const double goal = relative_residual * relative_residual * grid.right_norm2;
+    for (int k = 0; k < count && grid.residual_norm2 > goal; ++k) {
+        const double rho = precondition(grid);
+        const double beta = grid.rho > 0.0 ? rho / grid.rho : 0.0;
+        grid.rho = rho;
+        parallel_for("electric.direction", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
+            kernels.direction(fine, grid.krylov, static_cast<float>(beta), b, e);
+        });
+        const double curvature = parallel_sum(
+            "electric.apply", 0, size(fine), kChunk,
+            [&](std::int64_t b, std::int64_t e) { return kernels.apply(fine, grid.krylov.p.data(), b, e); });
+        if (!(curvature > 0.0) || !(rho > 0.0)) return false;
+        grid.residual_norm2 =
+            parallel_sum("electric.advance", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
+                return kernels.advance(fine, grid.krylov, static_cast<float>(rho / curvature), b, e);
+            });
+        ++grid.iterations;
+    }
+    return grid.residual_norm2 <= goal;
+}
+
+bool is_finite(const Multigrid& grid) {
+    return std::isfinite(grid.residual_norm2) && std::isfinite(grid.rho);
+}
+
+}  // namespace calot::electric
