@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "calot/base/parallel.h"
+#include "calot/deformation/ghosts.h"
 #include "calot/deformation/kernel.h"
 #include "calot/deformation/law.h"
 #include "calot/deformation/links.h"
@@ -61,6 +62,7 @@ KernelView KernelView::make(const Model& model, State& state, Work& work) {
     for (std::size_t e = 0; e < 6; ++e) view.moment_inverse[e] = work.moment_inverse[e].data();
     view.volume_m3 = work.volume_m3.data();
     view.inverse_mass_per_kg = work.inverse_mass_per_kg.data();
+    view.gravity_share = work.gravity_share.data();
     view.hourglass = work.hourglass.data();
     view.lame_mu_Pa = work.lame_mu_Pa.data();
     view.lame_lambda_Pa = work.lame_lambda_Pa.data();
@@ -91,8 +93,10 @@ void integrate(const Model& model, State& state, tissue::Exchange& exchange, Wor
         // each sweep must end everywhere before the next begins.
         parallel_for("deformation.velocities", first, last, kChunk,
                      [&](std::int64_t low, std::int64_t high) { sweep_velocities(view, low, high); });
+        return_ghost_impulses(state, work, view.decay);
         parallel_for("deformation.displacements", first, last, kChunk,
                      [&](std::int64_t low, std::int64_t high) { sweep_displacements(view, low, high); });
+        move_ghosts(state, work);
         parallel_for("deformation.gradients", first, last, kChunk,
                      [&](std::int64_t low, std::int64_t high) { sweep_gradients(view, low, high); });
     }

@@ -10,10 +10,12 @@ namespace calot::deformation {
 /// when a displacement is no longer finite.
 void integrate(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
-/// Recomputes rest properties of one phyxel (moment, volume, mass, hourglass, Lamé constants) and of the ghosts beside
-/// it, from its links and Work::occupancy. Call it for every phyxel whose hexels or links changed, after all of them
-/// have changed.
+/// Recomputes rest properties of one phyxel (moment, volume, constants, hourglass, mass), of the ghosts beside it and
+/// the masses of its neighbours, from links and Work::occupancy. Call it for every phyxel whose hexels or links
+/// changed, after all of them have changed.
 void refresh_phyxel(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t phyxel);
+/// The same for all at once.
+void refresh_all_phyxels(const tissue::Model& model, const tissue::State& state, Work& work);
 
 /// Recomputes gradient and moment stress of all phyxels from displacements.
 void update_gradients(const tissue::Model& model, const tissue::State& state, Work& work);

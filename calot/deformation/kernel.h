@@ -17,6 +17,7 @@ struct KernelView {
     std::array<const float*, 6> moment_inverse{};
     const float* volume_m3 = nullptr;
     const float* inverse_mass_per_kg = nullptr;
+    const float* gravity_share = nullptr;
     const float* hourglass = nullptr;
     const float* lame_mu_Pa = nullptr;
     const float* lame_lambda_Pa = nullptr;
@@ -39,7 +40,8 @@ inline constexpr std::int64_t kKernelGrain = 64;
 
 /// G and M of the cells [begin, end).
 void sweep_gradients(const KernelView& view, std::int64_t begin, std::int64_t end);
-/// Velocities of the cells [begin, end) after a substep of elastic forces, gravity and damping.
+/// Velocities of the cells [begin, end) after a substep of elastic forces, gravity and damping. Ghosts, which have
+/// none, get the impulse [N s] of the forces on them instead.
 void sweep_velocities(const KernelView& view, std::int64_t begin, std::int64_t end);
 /// Displacements of the cells [begin, end) after a substep at the present velocities.
 void sweep_displacements(const KernelView& view, std::int64_t begin, std::int64_t end);

@@ -244,7 +244,7 @@ HWY_INLINE void add_to_sums(const KernelView& k, std::int64_t i, const Lanes (&u
     if constexpr (!Dir::face) sums.step[Dir::second] = along<d>(sums.step[Dir::second], excess);
 }
 
-HWY_INLINE void velocities_of(const KernelView& k, std::int64_t i, Mask present) {
+HWY_INLINE void velocities_of(const KernelView& k, std::int64_t i, Mask present, Mask ghost) {
     Lanes u[3];
     Sums sums;
     for (int r = 0; r < 3; ++r) {
@@ -268,23 +268,24 @@ HWY_INLINE void velocities_of(const KernelView& k, std::int64_t i, Mask present)
     add_to_sums<7>(k, i, u, hourglass, sums);
     add_to_sums<8>(k, i, u, hourglass, sums);
     const Lanes spacing = all(k.spacing_m), decay = all(k.decay);
-    const Lanes gain = all(k.substep_s) * load(k.inverse_mass_per_kg + i);
+    const Lanes inverse_mass = load(k.inverse_mass_per_kg + i), gravity_share = load(k.gravity_share + i);
     for (int r = 0; r < 3; ++r) {
         const float* m = k.moment_stress[3 * r] + i;
         const Lanes own = load(m) * sums.step[0] + load(k.moment_stress[3 * r + 1] + i) * sums.step[1] +
                           load(k.moment_stress[3 * r + 2] + i) * sums.step[2];
-        const Lanes force = spacing * (sums.stress[r] + own) + sums.hourglass[r];
+        const Lanes impulse = all(k.substep_s) * (spacing * (sums.stress[r] + own) + sums.hourglass[r]);
         float* v = k.velocity_m_per_s[r] + i;
-        const Lanes gravity = all(k.gravity_step_m_per_s[static_cast<std::size_t>(r)]);
-        store(where(present, decay * (load(v) + gain * force + gravity)), v);
+        const Lanes gravity = all(k.gravity_step_m_per_s[static_cast<std::size_t>(r)]) * gravity_share;
+        const Lanes velocity = decay * (load(v) + inverse_mass * impulse + gravity);
+        store(where(present, velocity) + where(ghost, impulse), v);
     }
 }
 
 void velocities(const KernelView& k, std::int64_t begin, std::int64_t end) {
     const auto lanes = static_cast<std::int64_t>(hn::Lanes(D()));
     for (std::int64_t i = begin; i < end; i += lanes) {
-        if (simd::bits_at(D(), k.present, i) == 0) continue;
-        velocities_of(k, i, simd::mask_at(D(), k.present, i));
+        if ((simd::bits_at(D(), k.present, i) | simd::bits_at(D(), k.ghost, i)) == 0) continue;
+        velocities_of(k, i, simd::mask_at(D(), k.present, i), simd::mask_at(D(), k.ghost, i));
     }
 }
 

@@ -9,9 +9,12 @@
 //
 //   U = sum_i [ v_i Psi(1 + G_i) + kappa_i / 2 sum_j w |u_ij - G_i X_ij|^2 ]
 //
-// (the second term needs no derivative of G: G_i is the very matrix that makes it least).
-// Departure from Pan et al. 2019, Eq. 4: the outer product is transposed there, which does not survive rotation.
+// where ghosts are images of phyxels (ghosts.h); (the second term needs no derivative of G: G_i is the very matrix that
+// makes it least). Departure from Pan et al. 2019, Eq. 4: the outer product is transposed there, which does not survive
+// rotation.
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "calot/deformation/law.h"
@@ -30,16 +33,21 @@ class Reference {
     Reference(const tissue::Model& model, const tissue::State& state, const Work& work)
         : model_(model),
           links_(state.links),
+          mirrors_(work.mirrors),
           law_{model.deformation.law, static_cast<Real>(model.deformation.volume_stiffness_Pa)},
           displacement_m(static_cast<std::size_t>(model.phyxels.cells), Vec(0)),
           velocity_m_per_s(displacement_m),
           force_N(displacement_m),
           gradient(displacement_m.size(), Mat(Real(0))),
           moment_stress(gradient),
+          inverse_mass_per_kg(displacement_m.size(), 0),
+          gravity_share(inverse_mass_per_kg),
           rest(displacement_m.size()) {
         for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
             const auto cell = static_cast<std::size_t>(p);
             rest[cell] = phyxel_rest(model, state, work, p);
+            inverse_mass_per_kg[cell] = static_cast<Real>(work.inverse_mass_per_kg[cell]);
+            gravity_share[cell] = static_cast<Real>(work.gravity_share[cell]);
             for (int axis = 0; axis < 3; ++axis) {
                 displacement_m[cell][axis] = static_cast<Real>(state.displacement_m[axis][cell]);
                 velocity_m_per_s[cell][axis] = static_cast<Real>(state.velocity_m_per_s[axis][cell]);
@@ -47,8 +55,15 @@ class Reference {
         }
     }
 
-    /// G and M of all phyxels from displacements.
+    /// Displacements of ghosts from those of the phyxels, then G and M of all from displacements.
     void update_gradients() {
+        for (const Mirror& mirror : mirrors_) {
+            const Vec face(mirror.face_m[0], mirror.face_m[1], mirror.face_m[2]);
+            Vec sum(0);
+            for (int k = 0; k < mirror.count; ++k) sum += displacement_m[mirrored(mirror, k)];
+            displacement_m[static_cast<std::size_t>(mirror.ghost)] =
+                mirror.count > 0 ? Real(2) * face - sum / static_cast<Real>(mirror.count) : face;
+        }
         for (std::int64_t p = model_.phyxels.first; p < model_.phyxels.last; ++p) {
             const auto i = static_cast<std::size_t>(p);
             const Mat inverse(rest[i].moment_inverse_per_m2);
@@ -77,6 +92,11 @@ class Reference {
             });
             force_N[i] = f;
         }
+        for (const Mirror& mirror : mirrors_) {
+            Vec& f = force_N[static_cast<std::size_t>(mirror.ghost)];
+            for (int k = 0; k < mirror.count; ++k) force_N[mirrored(mirror, k)] -= f / static_cast<Real>(mirror.count);
+            f = Vec(0);
+        }
     }
 
     /// U [J]; gradients must be current.
@@ -103,26 +123,31 @@ class Reference {
         const Real decay = static_cast<Real>(std::exp(-model_.deformation.damping_per_s * static_cast<double>(dt_s)));
         const Vec gravity(model_.deformation.gravity_m_per_s2);
         for (std::size_t i = 0; i < rest.size(); ++i) {
-            if (rest[i].mass_kg == 0.0) continue;
-            velocity_m_per_s[i] =
-                decay * (velocity_m_per_s[i] + dt_s * (force_N[i] / static_cast<Real>(rest[i].mass_kg) + gravity));
+            if (inverse_mass_per_kg[i] == 0) continue;
+            const Vec acceleration = inverse_mass_per_kg[i] * force_N[i] + gravity_share[i] * gravity;
+            velocity_m_per_s[i] = decay * (velocity_m_per_s[i] + dt_s * acceleration);
             displacement_m[i] += dt_s * velocity_m_per_s[i];
         }
         update_gradients();
     }
 
   private:
+    static std::size_t mirrored(const Mirror& mirror, int k) {
+        return static_cast<std::size_t>(mirror.phyxel[static_cast<std::size_t>(k)]);
+    }
     Vec x(const Int3& step) const { return static_cast<Real>(model_.phyxels.spacing_m) * Vec(step); }
     Real hourglass(std::size_t i) const { return static_cast<Real>(rest[i].hourglass_N_per_m); }
 
     const tissue::Model& model_;
     const std::array<BitArray, 9>& links_;
+    const std::vector<Mirror>& mirrors_;
     Law<Real> law_;
 
   public:
     // [phyxels.cells]
     std::vector<Vec> displacement_m, velocity_m_per_s, force_N;
     std::vector<Mat> gradient, moment_stress;
+    std::vector<Real> inverse_mass_per_kg, gravity_share;
     std::vector<PhyxelRest> rest;
 };
 

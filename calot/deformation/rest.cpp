@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calot/deformation/ghosts.h"
 #include "calot/deformation/integrate.h"
 #include "calot/deformation/links.h"
+#include "calot/deformation/stable_mass.h"
 
 namespace calot::deformation {
 
@@ -13,9 +15,6 @@ using tissue::Model;
 using tissue::State;
 
 namespace {
-
-/// Ghosts stand for the half cell of held tissue between the clamped face and their centre, see docs/validation.md.
-constexpr double kGhostVolumeShare = 1.0;
 
 /// Sums over the hexels of one cell.
 struct Content {
@@ -84,53 +83,18 @@ double initial_trace(const Model& model, std::int64_t phyxel) {
     return trace;
 }
 
-/// How stiffly a phyxel's own stress pulls at its neighbours: k_ij = v (lambda + 2 mu) w^2 |A^-1 X_ij|^2, here in units
-/// of v (lambda + 2 mu) / s^2 and for the stiffest link. 0.11 in the bulk, 0.44 at a face, 0.7 at the corner of a
-/// block; 2.5 for a ghost behind such a corner, which sees sideways by one edge link alone.
-double stiffest_pull(const Model& model, const State& state, std::int64_t phyxel, const Mat3& moment_inverse) {
-    double stiffest = 0.0;
-    for_each_link(model.phyxels, state.links, phyxel, [&](std::int64_t, const Int3& step, double weight) {
-        const Vec3 pull = weight * (moment_inverse * Vec3(step));
-        stiffest = std::max(stiffest, glm::dot(pull, pull));
-    });
-    return stiffest;
-}
-
-/// Above this, a phyxel's volume is scaled down: with 2.5 a held block two cells wide blows up at the tick's time step,
-/// with 2 and less it does not, and no phyxel of a whole block reaches 1.
-constexpr double kStiffestPull = 1.0;
-
 /// Volume, mass and constants of a phyxel, volume not yet scaled.
 void fill_from_hexels(const Model& model, const Work& work, std::int64_t phyxel, PhyxelRest& rest) {
     const Content content = content_of(model, work, phyxel);
     if (content.hexels == 0) return;
-    rest.volume_m3 = content.hexels * model.hexel_volume_m3();
+    const double hexel_m3 = model.hexel_volume_m3();
+    rest.volume_m3 = content.hexels * hexel_m3;
+    rest.mass_kg = content.density * hexel_m3;
     rest.mu_Pa = content.mu / content.hexels;
     rest.lambda_Pa = content.lambda / content.hexels;
-    const double lightest = model.deformation.mass_fraction_floor * model.hexels_per_phyxel();
-    const double mean_density = content.density / content.hexels;
-    rest.mass_kg = std::max<double>(content.hexels, lightest) * mean_density * model.hexel_volume_m3() *
-                   static_cast<double>(model.phyxel_mass_scale[static_cast<std::size_t>(phyxel)]);
-}
-
-/// The same for a ghost: the mean over the phyxels linked to it. (With the volume of a full cell, a ghost is too stiff
-/// for the mass of burnt-out neighbours, and the time step unstable.)
-void fill_from_neighbours(const Model& model, const State& state, const Work& work, std::int64_t ghost,
-                          PhyxelRest& rest) {
-    double total = 0.0;
-    for_each_link(model.phyxels, state.links, ghost, [&](std::int64_t other, const Int3&, double weight) {
-        PhyxelRest neighbour;
-        fill_from_hexels(model, work, other, neighbour);
-        if (neighbour.volume_m3 == 0.0) return;
-        total += weight;
-        rest.volume_m3 += weight * neighbour.volume_m3;
-        rest.mu_Pa += weight * neighbour.mu_Pa;
-        rest.lambda_Pa += weight * neighbour.lambda_Pa;
-    });
-    if (total == 0.0) return;
-    rest.volume_m3 *= kGhostVolumeShare / total;
-    rest.mu_Pa /= total;
-    rest.lambda_Pa /= total;
+    const double fill = static_cast<double>(content.hexels) / model.hexels_per_phyxel();
+    rest.moving_mass_kg = rest.mass_kg * std::max(1.0, model.deformation.mass_fraction_floor / fill) *
+                          static_cast<double>(model.phyxel_mass_scale[static_cast<std::size_t>(phyxel)]);
 }
 
 }  // namespace
@@ -138,22 +102,22 @@ void fill_from_neighbours(const Model& model, const State& state, const Work& wo
 PhyxelRest phyxel_rest(const Model& model, const State& state, const Work& work, std::int64_t phyxel) {
     PhyxelRest rest;
     const bool ghost = model.phyxel_ghost.test(phyxel);
-    if (ghost)
-        fill_from_neighbours(model, state, work, phyxel, rest);
-    else if (state.phyxel_present.test(phyxel))
-        fill_from_hexels(model, work, phyxel, rest);
-    if (rest.volume_m3 == 0.0) return rest;
+    if (!ghost && state.phyxel_present.test(phyxel)) fill_from_hexels(model, work, phyxel, rest);
+    if (!ghost && rest.volume_m3 == 0.0) return rest;
 
     const Mat3 a = moment(model, state, phyxel);
     const auto [smallest, largest] = extreme_eigenvalues(a);
     // Nearly flat or lonely neighbourhoods: their gradient is ill-determined and blows up. They have no stress of their
     // own and are carried by what their neighbours see of them.
-    if (!(smallest >= model.deformation.singular_ratio * largest) || largest <= 0.0) return rest;
+    if (!(smallest >= model.deformation.singular_ratio * largest) || largest <= 0.0) {
+        rest.volume_m3 = 0.0;
+        return rest;
+    }
     const double trace = a[0][0] + a[1][1] + a[2][2];
-    rest.volume_m3 *= std::min(1.0, trace / initial_trace(model, phyxel));
-    rest.volume_m3 *= std::min(1.0, kStiffestPull / stiffest_pull(model, state, phyxel, glm::inverse(a)));
     const double s2 = model.phyxels.spacing_m * model.phyxels.spacing_m;
     rest.moment_inverse_per_m2 = glm::inverse(a) / s2;
+    if (ghost) return rest;
+    rest.volume_m3 *= std::min(1.0, trace / initial_trace(model, phyxel));
     const double youngs = rest.mu_Pa * (3.0 * rest.lambda_Pa + 2.0 * rest.mu_Pa) / (rest.lambda_Pa + rest.mu_Pa);
     rest.hourglass_N_per_m = model.deformation.hourglass_alpha * youngs * rest.volume_m3 / (trace * s2);
     return rest;
@@ -161,7 +125,7 @@ PhyxelRest phyxel_rest(const Model& model, const State& state, const Work& work,
 
 namespace {
 
-/// Stores the rest properties of one cell.
+/// Stores what depends on one cell alone, and on which phyxels a ghost mirrors.
 void store_rest(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
     const auto cell = static_cast<std::size_t>(phyxel);
     const PhyxelRest rest = phyxel_rest(model, state, work, phyxel);
@@ -170,23 +134,52 @@ void store_rest(const Model& model, const State& state, Work& work, std::int64_t
                                       inverse[1][1], inverse[2][1], inverse[2][2]};
     for (std::size_t k = 0; k < upper.size(); ++k) work.moment_inverse[k][cell] = static_cast<float>(upper[k]);
     work.volume_m3[cell] = static_cast<float>(rest.volume_m3);
-    work.inverse_mass_per_kg[cell] = rest.mass_kg > 0.0 ? static_cast<float>(1.0 / rest.mass_kg) : 0.0f;
     work.hourglass[cell] = static_cast<float>(rest.hourglass_N_per_m);
     work.lame_mu_Pa[cell] = static_cast<float>(rest.mu_Pa);
     work.lame_lambda_Pa[cell] = static_cast<float>(rest.lambda_Pa);
-    if (rest.volume_m3 == 0.0) {
+    refresh_pull(model, state, work, phyxel);
+    if (model.phyxel_ghost.test(phyxel)) refresh_mirror(model, state, work, phyxel);
+    if (upper[0] == 0.0) {
         for (auto& component : work.gradient) component[cell] = 0.0f;
         for (auto& component : work.moment_stress) component[cell] = 0.0f;
     }
+}
+
+/// Stores mass, which depends on the neighbours as well.
+void store_mass(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
+    const auto cell = static_cast<std::size_t>(phyxel);
+    PhyxelRest rest;
+    if (state.phyxel_present.test(phyxel)) fill_from_hexels(model, work, phyxel, rest);
+    const double moving = std::max(rest.moving_mass_kg, stable_mass_kg(model, state, work, phyxel));
+    work.inverse_mass_per_kg[cell] = rest.mass_kg > 0.0 ? static_cast<float>(1.0 / moving) : 0.0f;
+    work.gravity_share[cell] = rest.mass_kg > 0.0 ? static_cast<float>(rest.mass_kg / moving) : 0.0f;
+}
+
+template <class Visit>
+void for_each_neighbour_cell(const Lattice& phyxels, std::int64_t phyxel, const Visit& visit) {
+    for (const Int3& step : tissue::kLinkDirections)
+        for (const std::int64_t offset : {phyxels.offset(step), -phyxels.offset(step)}) visit(phyxel + offset);
 }
 
 }  // namespace
 
 void refresh_phyxel(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
     store_rest(model, state, work, phyxel);
-    for (const Int3& step : tissue::kLinkDirections)
-        for (const std::int64_t offset : {model.phyxels.offset(step), -model.phyxels.offset(step)})
-            if (model.phyxel_ghost.test(phyxel + offset)) store_rest(model, state, work, phyxel + offset);
+    for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
+        if (model.phyxel_ghost.test(other)) store_rest(model, state, work, other);
+    });
+    store_mass(model, state, work, phyxel);
+    for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
+        if (state.phyxel_present.test(other)) store_mass(model, state, work, other);
+    });
+}
+
+void refresh_all_phyxels(const Model& model, const State& state, Work& work) {
+    list_ghosts(model, work);
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p)
+        if (state.phyxel_present.test(p) || model.phyxel_ghost.test(p)) store_rest(model, state, work, p);
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p)
+        if (state.phyxel_present.test(p)) store_mass(model, state, work, p);
 }
 
 }  // namespace calot::deformation

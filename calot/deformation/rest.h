@@ -10,15 +10,15 @@ namespace calot::deformation {
 /// In double precision; refresh_phyxel stores it in Work as floats.
 struct PhyxelRest {
     Mat3 moment_inverse_per_m2{0.0};  ///< A^-1; zero where A is (nearly) singular
-    double volume_m3 = 0.0;           ///< v, effective
-    double mass_kg = 0.0;             ///< 0 = absent or fixed
+    double volume_m3 = 0.0;           ///< v, effective; 0 for ghosts
+    double mass_kg = 0.0;             ///< of its hexels; 0 = absent or ghost
+    double moving_mass_kg = 0.0;      ///< at least a share of a full cell, scaled by Model::phyxel_mass_scale
     double hourglass_N_per_m = 0.0;   ///< kappa
     double mu_Pa = 0.0;
     double lambda_Pa = 0.0;
 };
 
-/// Of a phyxel or ghost, from its live links and from Work::occupancy. Zeros for an absent cell. A ghost takes its
-/// elastic constants and volume from the phyxels linked to it.
+/// Of a phyxel or ghost, from its live links and from Work::occupancy. Zeros for an absent cell.
 PhyxelRest phyxel_rest(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t phyxel);
 
 }  // namespace calot::deformation

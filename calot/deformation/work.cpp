@@ -10,16 +10,15 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     const auto cells = static_cast<std::size_t>(model.phyxels.cells);
     initialise_topology(model, state, work);
     for (auto& component : work.moment_inverse) component.assign(cells, 0.0f);
-    for (Array<float>* field :
-         {&work.volume_m3, &work.inverse_mass_per_kg, &work.hourglass, &work.lame_mu_Pa, &work.lame_lambda_Pa})
+    for (Array<float>* field : {&work.volume_m3, &work.inverse_mass_per_kg, &work.gravity_share, &work.hourglass,
+                                &work.pull_N_per_m2, &work.lame_mu_Pa, &work.lame_lambda_Pa})
         field->assign(cells, 0.0f);
     for (auto& component : work.gradient) component.assign(cells, 0.0f);
     for (auto& component : work.moment_stress) component.assign(cells, 0.0f);
     work.substeps = model.deformation.substeps;
     work.substep_s = static_cast<float>(model.tick_s / work.substeps);
 
-    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p)
-        if (state.phyxel_present.test(p) || model.phyxel_ghost.test(p)) refresh_phyxel(model, state, work, p);
+    refresh_all_phyxels(model, state, work);
     update_gradients(model, state, work);
     return work;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "calot/base/array.h"
 #include "calot/tissue/exchange.h"
@@ -10,16 +11,28 @@
 
 namespace calot::deformation {
 
-/// [phyxels.cells] each. Cells without a phyxel hold zeros. Ghosts have moments, volume and gradients like all others.
+/// A ghost and the phyxels it mirrors: u_ghost = 2 face - mean(u), so that displacement halfway, at the held face, is
+/// that of the organ (ghosts.h).
+struct Mirror {
+    std::int32_t ghost = 0;
+    std::int32_t count = 0;
+    std::array<std::int32_t, 12> phyxel{};
+    std::array<float, 3> face_m{};  ///< displacement of the held face; 0 unless somebody moves the organ
+};
+
+/// [phyxels.cells] each. Cells without a phyxel hold zeros. Ghosts have moments and gradients, but no volume or mass.
 struct Work {
     // Rest properties, recomputed for a phyxel whenever its hexels or links change (refresh_phyxel)
     Array<std::uint64_t>
         occupancy;  ///< surviving hexels of the main component; bit x + m (y + m z), local coordinates; 0 for ghosts
     std::array<Array<float>, 6> moment_inverse;  ///< A^-1 [1/m^2], symmetric: xx xy xz yy yz zz; zero = no own stress
     Array<float> volume_m3;                      ///< v, effective (scaled down when poorly linked)
-    Array<float> inverse_mass_per_kg;            ///< 0 = absent or ghost
+    Array<float> inverse_mass_per_kg;            ///< of the mass that moves, 0 = absent or ghost
+    Array<float> gravity_share;                  ///< mass that weighs / mass that moves (stable_mass.h), 0 = absent
     Array<float> hourglass;                      ///< kappa
     Array<float> lame_mu_Pa, lame_lambda_Pa;     ///< volume averages over surviving hexels
+    Array<float> pull_N_per_m2;                  ///< of a phyxel's own stress at its neighbours (stable_mass.h)
+    std::vector<Mirror> mirrors;                 ///< of all ghosts, in the order of their cells
 
     // Always current: belongs to State::displacement_m at the end of integrate() and after sever_burnt_links()
     std::array<Array<float>, 9> gradient;       ///< G, row-major: gradient[3 r + c] = du_r / dX_c

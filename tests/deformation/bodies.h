@@ -5,6 +5,7 @@
 
 #include "calot/anatomy/block.h"
 #include "calot/base/random.h"
+#include "calot/deformation/ghosts.h"
 #include "calot/deformation/integrate.h"
 #include "calot/deformation/reference.h"
 #include "calot/tissue/sampling.h"
@@ -91,6 +92,7 @@ inline void shake(Body& body, double amplitude, double angle_rad, std::uint64_t 
         const Vec3 noise(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         body.set_displacement(p, turn * x - x + amplitude * kSpacing_m * noise);
     });
+    move_ghosts(body.state, body.work);
     update_gradients(body.model, body.state, body.work);
 }
 
