@@ -10,10 +10,9 @@ namespace calot::deformation::test {
 namespace {
 
 /// Lets a held block come to rest under gravity. `slowest_rad_per_s` is about its lowest frequency.
-Body settled(const Int3& phyxels, const Vec3& gravity, double slowest_rad_per_s, double alpha) {
+Body settled(const Int3& phyxels, const Vec3& gravity, double slowest_rad_per_s) {
     Body body(block(phyxels, true));
     body.model.deformation.gravity_m_per_s2 = gravity;
-    body.model.deformation.hourglass_alpha = alpha;
     body.model.deformation.damping_per_s = 2.0 * slowest_rad_per_s;
     body.refresh();
     const int ticks = static_cast<int>(12.0 / slowest_rad_per_s / body.model.tick_s);
@@ -37,28 +36,41 @@ double error_at_top(const Body& body, const ClampedBox& fem, int axis, int layer
 
 }  // namespace
 
+// Strain energy is summed at phyxel centres, which misses 1 / n^2 of that of bending (6 % for n = 4): the error falls
+// with n and stays below that plus what the finite elements, 8 deep, are off themselves.
 TEST(Convergence, Cantilever) {
     const tissue::Material fat = tissue::default_materials()[1];
-    const double load = 0.02 * fat.density_kg_per_m3;  // deflections of some 1e-3 of the length
-    const ClampedBox fem(Vec3(1, 1, 4), Int3(12, 12, 48), fat.youngs_modulus_Pa, fat.poisson_ratio, Vec3(load, 0, 0));
+    const double gravity = 0.02;  // deflections of 1e-3 of the length
+    const ClampedBox fem(Vec3(1, 1, 4), Int3(8, 8, 32), fat.youngs_modulus_Pa, fat.poisson_ratio,
+                         Vec3(gravity * fat.density_kg_per_m3, 0, 0));
+    double previous = 1.0;
     for (const int n : {4, 6, 8}) {
         const double length = 4 * n * kSpacing_m;
         const double slowest = 3.516 * (length / 4 / std::sqrt(12.0)) / (length * length) *
                                std::sqrt(fat.youngs_modulus_Pa / fat.density_kg_per_m3);
-        const Body body = settled({n, n, 4 * n}, Vec3(0.02, 0, 0), slowest, 0.6);
-        std::printf("cantilever %d: %+.2f %%  tip %g of length\n", n, 100 * error_at_top(body, fem, 0, 4 * n), 0.0);
+        const Body body = settled({n, n, 4 * n}, Vec3(gravity, 0, 0), slowest);
+        const double error = error_at_top(body, fem, 0, 4 * n);
+        RecordProperty("error_" + std::to_string(n), std::to_string(error));
+        EXPECT_LT(std::abs(error), 0.025 + 1.0 / (n * n)) << n;
+        EXPECT_LT(std::abs(error), previous);
+        previous = std::abs(error);
     }
 }
 
+// A fixed layer of ghosts instead of mirrored ones is off by 16, 10 and 7 %.
 TEST(Convergence, Cube) {
+    constexpr double kTolerance = 0.015;
     const tissue::Material fat = tissue::default_materials()[1];
-    const double load = 0.1 * fat.density_kg_per_m3;
-    const ClampedBox fem(Vec3(1, 1, 1), Int3(12), fat.youngs_modulus_Pa, fat.poisson_ratio, Vec3(0, 0, -load));
+    const double gravity = 0.1;
+    const ClampedBox fem(Vec3(1, 1, 1), Int3(12), fat.youngs_modulus_Pa, fat.poisson_ratio,
+                         Vec3(0, 0, -gravity * fat.density_kg_per_m3));
     for (const int n : {4, 8, 12}) {
         const double slowest =
-            0.5 * 3.14159 / 2 / (n * kSpacing_m) * std::sqrt(fat.youngs_modulus_Pa / fat.density_kg_per_m3);
-        const Body body = settled(Int3(n), Vec3(0, 0, -0.1), slowest, 0.6);
-        std::printf("cube %d: %+.2f %%\n", n, 100 * error_at_top(body, fem, 2, n));
+            0.5 * 1.5708 / (n * kSpacing_m) * std::sqrt(fat.youngs_modulus_Pa / fat.density_kg_per_m3);
+        const Body body = settled(Int3(n), Vec3(0, 0, -gravity), slowest);
+        const double error = error_at_top(body, fem, 2, n);
+        RecordProperty("error_" + std::to_string(n), std::to_string(error));
+        EXPECT_LT(std::abs(error), kTolerance) << n;
     }
 }
 
