@@ -30,9 +30,10 @@ struct Organ {
 struct Anatomy {
     std::vector<TissueRegion> tissues;
     std::vector<Organ> organs;
-    std::map<std::string, Vec3> landmarks_m;    ///< "triangle", "duct_middle", "artery_middle", "fat_window", "trocar", ...
-    std::map<std::string, double> facts;        ///< what this patient is like: "duct_length_mm", "artery_anterior" (0/1), ...
-    Box field;                                  ///< tissue outside this box is not sampled
+    std::map<std::string, Vec3>
+        landmarks_m;                      ///< "triangle", "duct_middle", "artery_middle", "fat_window", "trocar", ...
+    std::map<std::string, double> facts;  ///< what this patient is like: "duct_length_mm", "artery_anterior" (0/1), ...
+    Box field;                            ///< tissue outside this box is not sampled
 };
 
 }  // namespace calot::anatomy

@@ -20,4 +20,8 @@ class Shape {
 
 using ShapePtr = std::shared_ptr<const Shape>;
 
+/// What callers that skip space allow for: blends, noise and cached grids may exceed the true distance a little. Where
+/// |distance_m(p)| > kDistanceSlack * r no surface crosses the ball of radius r about p.
+inline constexpr double kDistanceSlack = 1.5;
+
 }  // namespace calot::anatomy

@@ -18,26 +18,58 @@ class FunctionShape final : public Shape {
     Box bounds_;
 };
 
+class UnionShape final : public Shape {
+  public:
+    UnionShape(std::vector<ShapePtr> shapes, double blend_m)
+        : shapes_(std::move(shapes)), blend_(blend_m), bounds_{Vec3(1e9), Vec3(-1e9)} {
+        for (const ShapePtr& shape : shapes_) {
+            bounds_.low = glm::min(bounds_.low, shape->bounds_m().low - blend_m);
+            bounds_.high = glm::max(bounds_.high, shape->bounds_m().high + blend_m);
+        }
+    }
+    double distance_m(const Vec3& position_m) const override {
+        double distance = 1e9;
+        for (const ShapePtr& shape : shapes_) distance = smooth_min(distance, shape->distance_m(position_m), blend_);
+        return distance;
+    }
+    Box bounds_m() const override { return bounds_; }
+
+  private:
+    std::vector<ShapePtr> shapes_;
+    double blend_;
+    Box bounds_;
+};
+
 }  // namespace
 
 ShapePtr make_shape(std::function<double(const Vec3&)> distance_m, const Box& bounds_m) {
     return std::make_shared<FunctionShape>(std::move(distance_m), bounds_m);
 }
 
+double box_distance_m(const Box& box_m, const Vec3& position_m) {
+    const Vec3 q = glm::abs(position_m - 0.5 * (box_m.low + box_m.high)) - 0.5 * (box_m.high - box_m.low);
+    return glm::length(glm::max(q, Vec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
+}
+
 ShapePtr make_box(const Vec3& low_m, const Vec3& high_m) {
-    const Vec3 centre = 0.5 * (low_m + high_m);
-    const Vec3 half = 0.5 * (high_m - low_m);
-    return make_shape(
-        [centre, half](const Vec3& p) {
-            const Vec3 q = glm::abs(p - centre) - half;
-            return glm::length(glm::max(q, Vec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
-        },
-        Box{low_m, high_m});
+    const Box box{low_m, high_m};
+    return make_shape([box](const Vec3& p) { return box_distance_m(box, p); }, box);
 }
 
 ShapePtr make_sphere(const Vec3& centre_m, double radius_m) {
     return make_shape([centre_m, radius_m](const Vec3& p) { return glm::length(p - centre_m) - radius_m; },
                       Box{centre_m - Vec3(radius_m), centre_m + Vec3(radius_m)});
+}
+
+ShapePtr make_union(std::vector<ShapePtr> shapes, double blend_m) {
+    return std::make_shared<UnionShape>(std::move(shapes), blend_m);
+}
+
+ShapePtr make_clipped(ShapePtr shape, const Box& box_m) {
+    const Box bounds = shape->bounds_m();
+    return make_shape(
+        [shape, box_m](const Vec3& p) { return std::max(shape->distance_m(p), box_distance_m(box_m, p)); },
+        Box{glm::max(bounds.low, box_m.low), glm::min(bounds.high, box_m.high)});
 }
 
 }  // namespace calot::anatomy

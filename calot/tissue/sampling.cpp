@@ -25,15 +25,77 @@ Box sampled_box(const anatomy::Anatomy& anatomy) {
     return box;
 }
 
+constexpr int kBlock = 4;             ///< hexels along the edge of the blocks that sampling skips
+constexpr MaterialIndex kHeld = 255;  ///< mark of empty cells inside an organ that holds
+
+/// Marks hexels block by block. A shape whose surface is farther from a block's centre than any of its hexels is not
+/// asked again for each of them: most blocks cost one query a shape.
+class BlockMarker {
+  public:
+    BlockMarker(const anatomy::Anatomy& anatomy, const std::vector<MaterialIndex>& material_of, const Model& model)
+        : field_(anatomy.field), hexels_(model.hexels) {
+        // In order of precedence: the last tissue wins, tissues before organs.
+        for (std::size_t k = anatomy.tissues.size(); k-- > 0;)
+            all_.push_back({anatomy.tissues[k].shape.get(), material_of[k]});
+        for (const auto& organ : model.organs)
+            if (organ.holds_tissue) all_.push_back({organ.shape.get(), kHeld});
+        undecided_.reserve(all_.size());
+    }
+
+    void mark_block(const Int3& low, Array<MaterialIndex>& mark) {
+        const Int3 high = glm::min(low + kBlock, hexels_.size);
+        const Vec3 half = 0.5 * hexels_.spacing_m * Vec3(high - 1 - low);
+        const Vec3 centre = hexels_.centre_m(low) + half;
+        const double clear = anatomy::kDistanceSlack * glm::length(half) + kOnSurface_m;
+        undecided_.clear();
+        for (const Candidate& candidate : all_) {
+            const double distance = candidate.shape->distance_m(centre);
+            if (distance > clear) continue;
+            undecided_.push_back({distance < -clear ? nullptr : candidate.shape, candidate.mark});
+            if (distance < -clear && (candidate.mark == kHeld || field_holds(centre - half, centre + half))) break;
+        }
+        if (undecided_.empty()) return;
+        for (int z = low.z; z < high.z; ++z)
+            for (int y = low.y; y < high.y; ++y)
+                for (int x = low.x; x < high.x; ++x)
+                    mark[static_cast<std::size_t>(hexels_.index(x, y, z))] = mark_at(hexels_.centre_m(Int3(x, y, z)));
+    }
+
+  private:
+    struct Candidate {
+        const anatomy::Shape* shape;  ///< null: holds the whole block
+        MaterialIndex mark;
+    };
+
+    bool field_holds(const Vec3& low, const Vec3& high) const {
+        return glm::all(glm::greaterThanEqual(low, field_.low)) && glm::all(glm::lessThanEqual(high, field_.high));
+    }
+    MaterialIndex mark_at(const Vec3& p) const {
+        const bool in_field = field_holds(p, p);
+        for (const Candidate& c : undecided_)
+            if ((in_field || c.mark == kHeld) &&
+                (c.shape == nullptr || c.shape->distance_m(p) < (c.mark == kHeld ? kOnSurface_m : 0.0)))
+                return c.mark;
+        return kNoMaterial;
+    }
+
+    Box field_;
+    const Lattice& hexels_;
+    std::vector<Candidate> all_, undecided_;
+};
+
 /// Wave speed of longitudinal waves [m/s], squared: (lambda + 2 mu) / rho.
-double wave_speed_squared(double mu, double lambda, double density) { return (lambda + 2.0 * mu) / density; }
+double wave_speed_squared(double mu, double lambda, double density) {
+    return (lambda + 2.0 * mu) / density;
+}
 
 }  // namespace
 
 Model sample(const anatomy::Anatomy& anatomy, const SamplingParameters& parameters, std::vector<Material> materials) {
     const int m = parameters.hexels_per_edge;
     if (m != 1 && m != 2 && m != 4)
-        throw InputError("hexels_per_edge is " + std::to_string(m), "use 1, 2 or 4 hexels along the edge of a phyxel's cell");
+        throw InputError("hexels_per_edge is " + std::to_string(m),
+                         "use 1, 2 or 4 hexels along the edge of a phyxel's cell");
     std::vector<MaterialIndex> material_of;
     for (const auto& tissue : anatomy.tissues) {
         material_of.push_back(find_material(materials, tissue.material));
@@ -45,7 +107,8 @@ Model sample(const anatomy::Anatomy& anatomy, const SamplingParameters& paramete
     model.materials = std::move(materials);
     model.hexels_per_edge = m;
     for (const auto& organ : anatomy.organs) {
-        model.organs.push_back({organ.name, find_material(model.materials, organ.material), organ.holds_tissue, organ.shape});
+        model.organs.push_back(
+            {organ.name, find_material(model.materials, organ.material), organ.holds_tissue, organ.shape});
     }
 
     const double hexel = parameters.hexel_spacing_m;
@@ -67,28 +130,14 @@ Model sample(const anatomy::Anatomy& anatomy, const SamplingParameters& paramete
     model.phyxel_mass_scale.assign(static_cast<std::size_t>(model.phyxels.cells), 1.0f);
 
     // Hexels: bytes first (bits of neighbouring rows share words, so they are set afterwards, by one thread).
-    constexpr MaterialIndex kHeld = 255;
     Array<MaterialIndex>& mark = model.hexel_material;
     const Int3 size = model.hexels.size;
-    parallel_for("tissue.sample", 0, size.z, 1, [&](std::int64_t z_low, std::int64_t z_high) {
+    const Int3 blocks = (size + kBlock - 1) / kBlock;
+    parallel_for("tissue.sample", 0, blocks.z, 1, [&](std::int64_t z_low, std::int64_t z_high) {
+        BlockMarker marker(anatomy, material_of, model);
         for (int z = static_cast<int>(z_low); z < z_high; ++z)
-            for (int y = 0; y < size.y; ++y)
-                for (int x = 0; x < size.x; ++x) {
-                    const Vec3 p = model.hexels.centre_m(Int3(x, y, z));
-                    MaterialIndex found = kNoMaterial;
-                    const bool in_field = glm::all(glm::greaterThanEqual(p, anatomy.field.low)) &&
-                                          glm::all(glm::lessThanEqual(p, anatomy.field.high));
-                    if (in_field)
-                        for (std::size_t k = anatomy.tissues.size(); k-- > 0 && found == kNoMaterial;)
-                            if (anatomy.tissues[k].shape->distance_m(p) < 0.0) found = material_of[k];
-                    if (found == kNoMaterial)
-                        for (const auto& organ : model.organs)
-                            if (organ.holds_tissue && organ.shape->distance_m(p) < kOnSurface_m) {
-                                found = kHeld;
-                                break;
-                            }
-                    mark[static_cast<std::size_t>(model.hexels.index(x, y, z))] = found;
-                }
+            for (int y = 0; y < blocks.y; ++y)
+                for (int x = 0; x < blocks.x; ++x) marker.mark_block(kBlock * Int3(x, y, z), mark);
     });
     std::vector<int> held_in_phyxel(static_cast<std::size_t>(model.phyxels.cells), 0);
     for (int z = 0; z < size.z; ++z)
@@ -107,11 +156,13 @@ Model sample(const anatomy::Anatomy& anatomy, const SamplingParameters& paramete
                 }
             }
     if (model.hexel_initial.count() == 0)
-        throw InputError("no hexel lies inside any tissue", "the tissue is thinner than the hexel spacing, or outside the field");
+        throw InputError("no hexel lies inside any tissue",
+                         "the tissue is thinner than the hexel spacing, or outside the field");
 
     // Ghosts: empty cells mostly inside a holding organ, next to tissue.
     for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
-        if (model.phyxel_initial.test(p) || 2 * held_in_phyxel[static_cast<std::size_t>(p)] < model.hexels_per_phyxel()) continue;
+        if (model.phyxel_initial.test(p) || 2 * held_in_phyxel[static_cast<std::size_t>(p)] < model.hexels_per_phyxel())
+            continue;
         bool beside_tissue = false;
         for (int dz = -1; dz <= 1; ++dz)
             for (int dy = -1; dy <= 1; ++dy)
