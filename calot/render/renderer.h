@@ -17,10 +17,12 @@ struct Image {
     std::vector<std::uint8_t> rgb;
 };
 
+enum class Api { any, opengl, opengl_es };
+
 /// A context without a window (EGL surfaceless). Throws std::runtime_error saying what is missing.
 class OffscreenContext {
   public:
-    OffscreenContext();
+    explicit OffscreenContext(Api api = Api::any);
     ~OffscreenContext();
     std::string description() const;  ///< vendor, renderer, version
 
@@ -29,19 +31,25 @@ class OffscreenContext {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Needs a current context. All objects live in that context.
+/// Needs a current context. All objects live in that context, which must be current when it is destroyed.
 class Renderer {
   public:
+    /// Throws std::runtime_error when OpenGL lacks something.
     Renderer(int width, int height, Quality quality);
     ~Renderer();
-    void draw(const View& view);   ///< into the renderer's own frame buffer
-    Image read();                  ///< what draw() made
+    void resize(int width, int height);
+    void draw(const View& view);  ///< into the renderer's own frame buffer
+    Image read();                 ///< what draw() made
+    /// Copies what draw() made into a frame buffer of the caller's (0 = the window), `width` x `height` from its
+    /// corner.
+    void present(std::uint32_t framebuffer, int width, int height);
 
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
 
+/// Written under a temporary name and renamed. Throws InputError when that fails.
 void write_png(const std::string& path, const Image& image);
 
 }  // namespace calot::render

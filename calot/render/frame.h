@@ -1,0 +1,40 @@
+#pragma once
+// What all shaders know of a picture: camera, lights, spark, the instrument's capsules.
+
+#include <array>
+#include <cstdint>
+
+#include "calot/render/view.h"
+
+namespace calot::render {
+
+inline constexpr int kMaxCapsules = 8;  ///< of an instrument, for shadows
+inline constexpr double kNear_m = 0.004;
+inline constexpr double kFar_m = 0.6;
+inline constexpr double kRoundOverHeight = 1.12;  ///< diameter of the round image over the picture's height
+inline constexpr double kBarrel = 0.10;           ///< how much more the middle is magnified than the edge
+
+/// Uniform block "Frame" (std140), see shaders_common.cpp.
+struct FrameUniforms {
+    glm::mat4 view_projection;
+    glm::mat4 view;
+    glm::vec4 eye;
+    glm::vec4 axis;
+    std::array<glm::vec4, 2> light;
+    glm::vec4 spark;
+    glm::vec4 projection;
+    glm::vec4 round;
+    glm::vec4 pixels;
+    std::array<glm::vec4, kMaxCapsules> capsule_a;
+    std::array<glm::vec4, kMaxCapsules> capsule_b;
+    glm::ivec4 counts;
+};
+static_assert(sizeof(FrameUniforms) == 4 * (32 + 4 * 9 + 8 * kMaxCapsules));
+
+/// A pure function of the view and the size of the scene's target.
+FrameUniforms make_frame(const View& view, int width, int height);
+
+/// Arterial pressure over a beat, 0 to about 1: quick rise, slow fall, dicrotic wave.
+float pulse_at(double time_s);
+
+}  // namespace calot::render

@@ -1,0 +1,264 @@
+#include "calot/render/shaders.h"
+
+namespace calot::render::shaders {
+
+const char* const kTissueVertex = R"(
+layout(location = 0) in vec3 a_world;
+layout(location = 1) in vec3 a_normal;
+layout(location = 2) in vec3 a_rest;
+layout(location = 3) in vec4 a_heat;      // temperature, peak [K], damage, dryness
+layout(location = 4) in float a_exposure;
+layout(location = 5) in vec4 a_weights;   // fat, duct, artery, gallbladder
+out vec3 v_world;
+out vec3 v_normal;
+out vec3 v_rest;     // mm
+out vec4 v_burn;     // temperature, peak [C], coagulated 0..1, dryness
+out float v_exposure;
+out vec4 v_weights;
+invariant gl_Position;
+void main() {
+    v_weights = a_weights;
+    v_world = a_world;
+#ifdef MIXED
+    v_world += a_normal * (0.00012 * a_weights.z * u_round.w);   // the artery swells with each beat
+#endif
+    v_normal = a_normal;
+    v_rest = 1000.0 * a_rest;
+    v_burn = vec4(a_heat.xy - 273.15, 1.0 - exp(-a_heat.z), a_heat.w);
+    v_exposure = a_exposure;
+    gl_Position = u_view_projection * vec4(v_world, 1.0);
+}
+)";
+
+// Colours are linear. Each look gives albedo, how much the pillows and bumps show, and how wet it is.
+const char* const kTissueLooks = R"(
+struct Samples {
+    vec4 cell;    // see noise.h
+    vec4 pillow;  // gradient of lobules (-1..1), height
+    vec4 base;
+    vec4 fine;    // smooth noise at a smaller scale
+    float vein;   // 0..1, branching lines
+    float vein_fine;
+    float relief; // fine bumps, 0..1
+};
+struct Look {
+    vec3 albedo;
+    float pillow; // height of lobules [mm]
+    float bump;   // height of fine bumps [mm]
+    float rough;
+    float coat;
+    float coat_rough;
+};
+
+// Level lines of smooth noise wander and branch as vessels do; `width` in units of the noise.
+float level_line(float value, float width) { return 1.0 - smoothstep(0.35 * width, width, abs(value - 0.5)); }
+
+Look fat_look(Samples s) {
+    Look look;
+    float septum = 1.0 - smoothstep(0.03, 0.26, s.cell.g);
+    vec3 deep = vec3(0.66, 0.34, 0.055), pale = vec3(0.90, 0.69, 0.30);
+    float tone = clamp(0.15 + 0.45 * s.pillow.w + 1.5 * (s.base.r - 0.5) + 0.45 * (s.cell.b - 0.5), 0.0, 1.0);
+    look.albedo = mix(deep, pale, tone);
+    look.albedo = mix(look.albedo, vec3(0.97, 0.84, 0.55), 0.35 * smoothstep(0.55, 0.85, s.fine.a));
+    look.albedo = mix(look.albedo, vec3(0.66, 0.27, 0.16), 0.55 * septum);
+    look.albedo = mix(look.albedo, vec3(0.50, 0.055, 0.035), 0.75 * s.vein + 0.45 * s.vein_fine);
+    look.pillow = 0.42;
+    look.bump = 0.16;
+    look.rough = 0.42;
+    look.coat = 0.9;
+    look.coat_rough = 0.20;
+    return look;
+}
+Look duct_look(Samples s) {
+    Look look;
+    look.albedo = mix(vec3(0.60, 0.58, 0.36), vec3(0.80, 0.76, 0.58), clamp(0.5 + 1.6 * (s.base.r - 0.5), 0.0, 1.0));
+    look.albedo = mix(look.albedo, vec3(0.62, 0.12, 0.09), 0.5 * s.vein_fine);
+    look.pillow = 0.03;
+    look.bump = 0.07;
+    look.rough = 0.38;
+    look.coat = 1.0;
+    look.coat_rough = 0.16;
+    return look;
+}
+Look artery_look(Samples s, float pulse) {
+    Look look;
+    look.albedo = mix(vec3(0.60, 0.13, 0.10), vec3(0.80, 0.33, 0.27), clamp(0.5 + 1.8 * (s.base.r - 0.5), 0.0, 1.0));
+    look.albedo *= mix(vec3(1.0, 0.92, 0.92), vec3(1.18, 1.0, 1.0), pulse);
+    look.pillow = 0.02;
+    look.bump = 0.06;
+    look.rough = 0.38;
+    look.coat = 1.0;
+    look.coat_rough = 0.16;
+    return look;
+}
+Look gallbladder_look(Samples s) {
+    Look look;
+    float tone = clamp(0.5 + 1.5 * (s.base.r - 0.5), 0.0, 1.0);
+    look.albedo = mix(vec3(0.19, 0.27, 0.215), vec3(0.42, 0.48, 0.37), tone);
+    look.albedo = mix(look.albedo, vec3(0.62, 0.55, 0.33), 0.45 * smoothstep(0.56, 0.72, s.base.b));   // fat shining through
+    look.albedo = mix(look.albedo, vec3(0.47, 0.09, 0.07), 0.8 * s.vein + 0.5 * s.vein_fine);
+    look.pillow = 0.05;
+    look.bump = 0.06;
+    look.rough = 0.33;
+    look.coat = 1.0;
+    look.coat_rough = 0.15;
+    return look;
+}
+Look liver_look(Samples s) {
+    Look look;
+    float mottle = clamp(0.5 + 1.3 * (s.base.r - 0.5) + 0.9 * (s.fine.r - 0.5), 0.0, 1.0);
+    look.albedo = mix(vec3(0.17, 0.032, 0.022), vec3(0.36, 0.105, 0.065), mottle);
+    look.albedo = mix(look.albedo, vec3(0.42, 0.17, 0.11), 0.30 * (1.0 - smoothstep(0.0, 0.22, s.cell.a)));
+    look.pillow = 0.03;
+    look.bump = 0.085;
+    look.rough = 0.36;
+    look.coat = 1.0;
+    look.coat_rough = 0.17;
+    return look;
+}
+Look peritoneum_look(Samples s) {
+    Look look;
+    float tone = clamp(0.5 + 1.6 * (s.base.r - 0.5), 0.0, 1.0);
+    look.albedo = mix(vec3(0.58, 0.22, 0.16), vec3(0.80, 0.46, 0.35), tone);
+    look.albedo = mix(look.albedo, vec3(0.85, 0.62, 0.28), 0.55 * smoothstep(0.50, 0.70, s.base.b));   // fat beneath
+    look.albedo = mix(look.albedo, vec3(0.50, 0.06, 0.05), 0.75 * s.vein + 0.5 * s.vein_fine);
+    look.pillow = 0.10;
+    look.bump = 0.09;
+    look.rough = 0.36;
+    look.coat = 1.0;
+    look.coat_rough = 0.17;
+    return look;
+}
+Look bowel_look(Samples s) {
+    Look look = peritoneum_look(s);
+    look.albedo = mix(look.albedo, vec3(0.82, 0.50, 0.42), 0.6);
+    return look;
+}
+
+Look mixed(Look a, Look b, float t) {
+    return Look(mix(a.albedo, b.albedo, t), mix(a.pillow, b.pillow, t), mix(a.bump, b.bump, t), mix(a.rough, b.rough, t),
+                mix(a.coat, b.coat, t), mix(a.coat_rough, b.coat_rough, t));
+}
+)";
+
+const char* const kTissueFragment = R"(
+in vec3 v_world;
+in vec3 v_normal;
+in vec3 v_rest;
+in vec4 v_burn;
+in float v_exposure;
+in vec4 v_weights;
+uniform sampler3D u_cells;
+uniform sampler3D u_pillow;
+uniform sampler3D u_smooth;
+uniform sampler3D u_bump;
+uniform sampler2D u_occlusion;
+out vec4 o_colour;
+
+vec3 slope_of(vec3 texel) { return 2.0 * texel - 1.0; }
+
+void main() {
+    vec3 p = v_rest;
+    Samples s;
+    s.base = texture(u_smooth, p / 26.0);
+    vec3 warped = p + 5.0 * (s.base.rgb - 0.5);
+    s.cell = texture(u_cells, warped / 25.0);
+    vec4 pillow = texture(u_pillow, warped / 25.0);
+    vec4 bump = texture(u_bump, p / 10.0);
+    // Slopes in height per mm, for 1 mm of height.
+    vec3 lobules = slope_of(pillow.rgb) * (PILLOW_SLOPE / 25.0);
+    vec3 bumps = slope_of(bump.rgb) * (BUMP_SLOPE / 10.0);
+    s.pillow = vec4(lobules, pillow.w);
+    s.relief = bump.w;
+#if QUALITY > 0
+    s.fine = texture(u_smooth, p.yzx / 8.0);
+    vec4 small = texture(u_bump, p.zxy / 4.1);
+    bumps += 0.45 * slope_of(small.rgb) * (BUMP_SLOPE / 4.1);
+    vec4 lobes = texture(u_pillow, (warped.yzx + 3.0 * (s.fine.rgb - 0.5)) / 9.7);
+    lobules += 0.30 * slope_of(lobes.rgb).zxy * (PILLOW_SLOPE / 9.7);
+    s.pillow.w = mix(s.pillow.w, lobes.w, 0.3);
+#else
+    s.fine = s.base.argb;
+#endif
+    float here = smoothstep(0.42, 0.60, s.base.b);
+    s.vein = level_line(s.base.g, 0.016) * here;
+    s.vein_fine = level_line(s.fine.g, 0.035) * smoothstep(0.50, 0.62, s.fine.b) * (0.4 + 0.6 * here);
+
+    float pulse = u_round.w;
+#ifdef MIXED
+    vec4 w = v_weights / max(dot(v_weights, vec4(1.0)), 1e-4);
+    // Borders wander a little, so that tissues meet along an uneven line.
+    w = clamp(w + 0.35 * (s.fine.r - 0.5) * w * (1.0 - w), 0.0, 1.0);
+    Look look = fat_look(s);
+    look = mixed(look, duct_look(s), smoothstep(0.25, 0.75, w.y));
+    look = mixed(look, artery_look(s, pulse), smoothstep(0.25, 0.75, w.z));
+    look = mixed(look, gallbladder_look(s), smoothstep(0.25, 0.75, w.w));
+    float fatness = 1.0 - smoothstep(0.25, 0.75, w.y + w.z + w.w);
+#else
+    Look look = ORGAN_LOOK;
+#endif
+    float veil = 0.0;
+    vec3 glow = vec3(0.0);
+#ifdef MIXED
+    // --- What burning leaves behind. Ragged by noise: steps follow the peak temperature shifted by up to 20 K.
+    float ragged = 60.0 * (s.base.a - 0.5) + 40.0 * (s.fine.r - 0.5);
+    float peak = v_burn.y + clamp((v_burn.y - 45.0) / 40.0, 0.0, 1.0) * ragged;
+    float blanched = max(smoothstep(52.0, 72.0, peak), smoothstep(0.3, 0.9, v_burn.z));
+    float browned = smoothstep(125.0, 200.0, peak);
+    float charred = smoothstep(215.0, 285.0, peak);
+    // Laid bare: raw, frothy, wet, with thin pale strands.
+    float bare = smoothstep(0.15, 0.65, v_exposure);
+    float froth = 1.0 - smoothstep(0.02, 0.30, s.cell.a);
+    float strand = level_line(s.fine.b, 0.05) * smoothstep(0.45, 0.6, s.base.a);
+    vec3 raw = look.albedo * mix(vec3(0.95, 0.74, 0.52), vec3(0.92, 0.46, 0.34), smoothstep(0.42, 0.60, s.fine.r));
+    raw = mix(raw, vec3(0.90, 0.80, 0.60), 0.16 * froth + 0.5 * strand);
+    look.albedo = mix(look.albedo, raw, bare);
+    look.pillow *= 1.0 - 0.75 * bare;
+    look.bump += 0.14 * bare;
+    look.coat_rough = mix(look.coat_rough, 0.15, bare);
+
+    vec3 pale = mix(vec3(0.80, 0.70, 0.52), vec3(0.88, 0.82, 0.70), s.fine.a);
+    look.albedo = mix(look.albedo, pale, 0.78 * blanched);
+    vec3 brown = mix(vec3(0.34, 0.145, 0.035), vec3(0.13, 0.045, 0.014), smoothstep(150.0, 230.0, peak + 60.0 * (s.relief - 0.5)));
+    look.albedo = mix(look.albedo, brown, 0.92 * browned);
+    float crack = 1.0 - smoothstep(0.03, 0.16, s.cell.a);
+    float ash = smoothstep(0.64, 0.74, s.fine.a) * smoothstep(0.5, 0.65, s.base.a);
+    vec3 char_colour = mix(vec3(0.016, 0.012, 0.010), vec3(0.075, 0.038, 0.022), 0.7 * crack);
+    char_colour = mix(char_colour, vec3(0.34, 0.31, 0.28), 0.7 * ash);
+    look.albedo = mix(look.albedo, char_colour, charred);
+    float dry = max(max(0.55 * blanched, 0.75 * browned), max(0.93 * charred, 0.8 * v_burn.w));
+    look.coat *= 1.0 - dry;
+    look.rough = mix(look.rough, 0.62, dry);
+    look.coat_rough = mix(look.coat_rough, 0.36, dry);
+    look.bump += 0.16 * charred + 0.05 * browned;
+    look.pillow *= 1.0 - 0.6 * charred;
+    // Embers, only while hot.
+    float ember = smoothstep(230.0, 330.0, v_burn.x) * (0.25 + crack);
+    glow = vec3(1.0, 0.22, 0.03) * 0.5 * ember;
+#endif
+    vec3 up = normalize(v_normal);
+    vec3 toward = normalize(u_eye.xyz - v_world);
+    vec3 tilt = look.pillow * lobules + look.bump * bumps;
+    tilt -= dot(tilt, up) * up;
+    Material m;
+    m.normal = normalize(up - 0.8 * tilt);
+    m.coat_normal = normalize(up - 0.55 * look.pillow * (lobules - dot(lobules, up) * up) - 0.8 * look.bump * (bumps - dot(bumps, up) * up));
+    m.albedo = look.albedo;
+    m.rough = look.rough;
+    m.specular = 0.035;
+    m.coat = look.coat;
+    m.coat_rough = look.coat_rough;
+    m.wrap = vec3(0.42, 0.22, 0.12);
+    // Thin at grazing view: light that went through comes back warm.
+    float edge = 1.0 - clamp(dot(up, toward), 0.0, 1.0);
+    m.albedo *= mix(vec3(1.0), vec3(1.06, 0.86, 0.74), edge * edge);
+    m.occlusion = mix(0.72, 1.0, s.pillow.w * min(1.0, 2.4 * look.pillow) + 1.0 - min(1.0, 2.4 * look.pillow));
+#if QUALITY > 0
+    m.occlusion *= texture(u_occlusion, gl_FragCoord.xy * u_pixels.zw).r;
+#endif
+    vec3 colour = light_material(m, v_world, true) + glow;
+    o_colour = vec4(encode(colour), 1.0);
+}
+)";
+
+}  // namespace calot::render::shaders
