@@ -121,7 +121,7 @@ float field_value(const Moments& m, bool present) {
     return std::max({share, 0.5f - length / static_cast<float>(kFullFieldWeight - m.weight), kLeastValue});
 }
 
-inline Moments packed_moments(const Window& window, int x, int y, int z) {
+Moments moments_at(const Window& window, int x, int y, int z) {
     const std::uint32_t* centre = &window.rows[static_cast<std::size_t>((z + kReach) * Window::kRows + y + kReach)];
     Sums sums;
     sums.add_plane<-3>(centre, x);
@@ -135,15 +135,6 @@ inline Moments packed_moments(const Window& window, int x, int y, int z) {
     const SignedPair along_y = unpack_signed(sums.across[1] + 2 * sums.across[2] + 3 * sums.across[3]),
                      along_z = unpack_signed(sums.by_z);
     return {total.field, {total.field_x, along_y.field, along_z.field}, {total.slope_x, along_y.slope, along_z.slope}};
-}
-
-Moments moments_at(const Window& window, int x, int y, int z) {
-    return packed_moments(window, x, y, z);
-}
-
-PointValue value_at(const Window& window, int x, int y, int z) {
-    const Moments moments = packed_moments(window, x, y, z);
-    return {field_value(moments, window.test(x, y, z)), Vec3f(moments.slope)};
 }
 
 Moments moments_at_reference(const Window& window, int x, int y, int z) {

@@ -66,13 +66,6 @@ Moments moments_at(const Window& window, int x, int y, int z);
 /// The same, neighbour by neighbour: what the other is compared with.
 Moments moments_at_reference(const Window& window, int x, int y, int z);
 
-/// Field and slope at a point.
-struct PointValue {
-    float v;
-    Vec3f slope;
-};
-PointValue value_at(const Window& window, int x, int y, int z);
-
 /// The field in units of L: negative where the hexel is present.
 float field_value(const Moments& moments, bool present);
 

@@ -1,14 +1,12 @@
 #include "calot/surface/surface.h"
 
 #include <algorithm>
-#include <bitset>
-#include <cmath>
-#include <type_traits>
 
 #include "calot/base/parallel.h"
 #include "calot/surface/block_grid.h"
 #include "calot/surface/pool.h"
 #include "calot/surface/smoothing.h"
+#include "calot/surface/vertex_batch.h"
 
 namespace calot::surface {
 
@@ -187,49 +185,40 @@ void Surface::Impl::redo_vertices(std::int64_t block) {
 
 namespace {
 
-/// Field and slope at the points of one block, worked out where the surface needs them.
-class PointValues {
-  public:
-    explicit PointValues(const Window& window) : window_(window) {}
-    const PointValue& at(const Int3& p) {
-        const auto k = static_cast<std::size_t>((p.z * Window::kEdge + p.y) * Window::kEdge + p.x);
-        if (!known_[k]) {
-            values_[k] = value_at(window_, p.x, p.y, p.z);
-            known_[k] = true;
-        }
-        return values_[k];
+/// Edges of a block whose vertices are to be worked out, by axis.
+struct EdgeList {
+    struct Edge {
+        std::uint16_t place;   ///< of the vertex in the block
+        std::uint8_t x, y, z;  ///< lower end
+    };
+    std::array<Edge, EdgeBatch::kEdges> edges;
+    std::size_t count = 0;
+};
+
+/// Ends of edges, as bits of rows [9 z + y], and where they are in a PointBatch.
+struct EndPoints {
+    std::array<std::uint32_t, 81> rows{};
+    std::array<std::uint16_t, PointBatch::kPoints> place;
+
+    void add(int row, int axis, std::uint32_t line) {
+        const auto r = static_cast<std::size_t>(9 * (row >> 3) + (row & 7));
+        rows[r] |= axis == 0 ? line | line << 1 : line;
+        if (axis == 1) rows[r + 1] |= line;
+        if (axis == 2) rows[r + 9] |= line;
     }
-
-  private:
-    static constexpr std::size_t kPoints = Window::kEdge * Window::kEdge * Window::kEdge;
-    const Window& window_;
-    std::bitset<kPoints> known_;
-    std::array<PointValue, kPoints> values_;
+    static constexpr std::size_t at(int x, int y, int z) { return static_cast<std::size_t>(9 * (9 * z + y) + x); }
+    void evaluate_all(const Window& window, PointBatch& points) {
+        points.count = 0;
+        for (int z = 0; z < Window::kEdge; ++z)
+            for (int y = 0; y < Window::kEdge; ++y)
+                for (std::uint32_t line = rows[static_cast<std::size_t>(9 * z + y)]; line != 0; line &= line - 1) {
+                    const int x = __builtin_ctz(line);
+                    place[at(x, y, z)] = static_cast<std::uint16_t>(points.count);
+                    points.add(moments_at(window, x, y, z), window.test(x, y, z));
+                }
+        evaluate(points);
+    }
 };
-
-struct Vertex {
-    Vec3f place_L;  ///< from the lower end of its edge, in L
-    Vec3f normal;
-    bool lower_end_present;
-};
-
-/// The vertex between two neighbours along an axis.
-template <int axis>
-Vertex vertex_between(const PointValue& a, const PointValue& b) {
-    const float t = a.v / (a.v - b.v);
-    // Out of the tissue; at least not into it, where walls face each other across a gap.
-    Vec3f n = -((1.0f - t) * a.slope + t * b.slope);
-    const float outward = a.v < 0.0f ? 1.0f : -1.0f;
-    n[axis] = outward * std::max(outward * n[axis], 0.0f);
-    const float squares = glm::dot(n, n);
-    if (squares > 0.0f)
-        n *= 1.0f / std::sqrt(squares);
-    else
-        n[axis] = outward;
-    Vec3f place_L(0.0f);
-    place_L[axis] = t;
-    return {place_L, n, a.v < 0.0f};
-}
 
 }  // namespace
 
@@ -237,42 +226,62 @@ Vertex vertex_between(const PointValue& a, const PointValue& b) {
 void Surface::Impl::write_vertices(std::int64_t block, const ChangedPoints* changed) {
     const BlockEdges& edges = grid.edges(block);
     if (edges.vertices == 0) return;
+    const std::size_t first = vertex_range[static_cast<std::size_t>(block)].offset;
+    std::array<EdgeList, 3> lists;
+    EndPoints ends;
+    int place = 0;
+    for (int row = 0; row < kBlock * kBlock; ++row)
+        for (int axis = 0; axis < 3 && edges.cut[static_cast<std::size_t>(row)] != 0; ++axis) {
+            const std::uint32_t line = edges.cut[static_cast<std::size_t>(row)] >> (8 * axis) & 0xffu;
+            const std::uint32_t kept = changed ? line & ~changed->edges(row, axis) : 0u;
+            ends.add(row, axis, line & ~kept);
+            EdgeList& list = lists[static_cast<std::size_t>(axis)];
+            for (std::uint32_t cut = line; cut != 0; cut &= cut - 1, ++place) {
+                const int x = __builtin_ctz(cut);
+                if ((kept >> x) & 1u) {
+                    const auto from = static_cast<std::size_t>(old.edges.place(row, 8 * axis + x)),
+                               to = first + static_cast<std::size_t>(place);
+                    position_m[to] = old.position_m[from];
+                    normal[to] = old.normal[from];
+                    owner[to] = old.owner[from];
+                } else {
+                    list.edges[list.count++] = {static_cast<std::uint16_t>(place), static_cast<std::uint8_t>(x),
+                                                static_cast<std::uint8_t>(row & 7),
+                                                static_cast<std::uint8_t>(row >> 3)};
+                }
+            }
+        }
+    if (lists[0].count + lists[1].count + lists[2].count == 0) return;
     Window window;
     grid.load(block, window);
-    PointValues values(window);
-    const Int3 low = kBlock * grid.block_coordinates(block), axes(grid.axis(0), grid.axis(1), grid.axis(2));
-    const auto step_m = static_cast<float>(spacing_m);
-    std::size_t vertex = vertex_range[static_cast<std::size_t>(block)].offset;
+    PointBatch points;
+    ends.evaluate_all(window, points);
 
-    auto write_edges = [&]<int axis>(int row, std::integral_constant<int, axis>) {
-        const std::uint32_t line = edges.cut[static_cast<std::size_t>(row)] >> (8 * axis) & 0xffu;
-        const std::uint32_t kept = changed ? line & ~changed->edges(row, axis) : 0u;
-        for (std::uint32_t cut = line; cut != 0; cut &= cut - 1, ++vertex) {
-            const int x = __builtin_ctz(cut);
-            if ((kept >> x) & 1u) {
-                const auto k = static_cast<std::size_t>(old.edges.place(row, 8 * axis + x));
-                position_m[vertex] = old.position_m[k];
-                normal[vertex] = old.normal[k];
-                owner[vertex] = old.owner[k];
-                continue;
-            }
-            const Int3 p(x, row & 7, row >> 3), q = p + Int3(axis == 0, axis == 1, axis == 2);
-            const Vertex v = vertex_between<axis>(values.at(p), values.at(q));
-            const Vec3 end_m = origin_m + spacing_m * Vec3(low + p);
-            float* position = &position_m[vertex].x;
-            float* n = &normal[vertex].x;
-            for (int k = 0; k < 3; ++k) {
-                position[axes[k]] = static_cast<float>(end_m[k]) + step_m * v.place_L[k];
-                n[axes[k]] = v.normal[k];
-            }
-            owner[vertex] = grid.hexel_of(low + (v.lower_end_present ? p : q));
+    const Int3 low = kBlock * grid.block_coordinates(block);
+    const auto step_m = static_cast<float>(spacing_m);
+    for (int axis = 0; axis < 3; ++axis) {
+        const EdgeList& list = lists[static_cast<std::size_t>(axis)];
+        const std::size_t to_upper = axis == 0 ? 1 : axis == 1 ? 9 : 81;
+        EdgeBatch batch;
+        for (std::size_t k = 0; k < list.count; ++k) {
+            const std::size_t lower = EndPoints::at(list.edges[k].x, list.edges[k].y, list.edges[k].z);
+            batch.add(points, ends.place[lower], ends.place[lower + to_upper], axis);
         }
-    };
-    for (int row = 0; row < kBlock * kBlock; ++row) {
-        if (edges.cut[static_cast<std::size_t>(row)] == 0) continue;
-        write_edges(row, std::integral_constant<int, 0>{});
-        write_edges(row, std::integral_constant<int, 1>{});
-        write_edges(row, std::integral_constant<int, 2>{});
+        evaluate(batch);
+        // Component k of the batch is inner axis (axis + k) % 3.
+        const int outer[3] = {grid.axis(axis), grid.axis((axis + 1) % 3), grid.axis((axis + 2) % 3)};
+        for (std::size_t k = 0; k < list.count; ++k) {
+            const EdgeList::Edge& edge = list.edges[k];
+            const std::size_t vertex = first + edge.place;
+            Int3 p = low + Int3(edge.x, edge.y, edge.z);
+            float* position = &position_m[vertex].x;
+            for (int c = 0; c < 3; ++c) position[grid.axis(c)] = static_cast<float>(origin_m[c] + spacing_m * p[c]);
+            position[outer[0]] += step_m * batch.share[k];
+            float* n = &normal[vertex].x;
+            for (std::size_t c = 0; c < 3; ++c) n[outer[c]] = batch.normal[c][k];
+            if (batch.lower_value[k] >= 0.0f) ++p[axis];
+            owner[vertex] = grid.hexel_of(p);
+        }
     }
 }
 

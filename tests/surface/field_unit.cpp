@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <functional>
 
 #include "calot/base/random.h"
+#include "calot/surface/vertex_batch.h"
 
 namespace calot::surface {
 
@@ -18,6 +20,10 @@ Window window_of(const std::function<bool(int, int, int)>& filled) {
             for (int x = -kReach; x < Window::kEdge + kReach; ++x)
                 if (filled(x, y, z)) window.row(y, z) |= 1u << (x + kReach);
     return window;
+}
+
+float value_at(const Window& window, int x, int y, int z) {
+    return field_value(moments_at(window, x, y, z), window.test(x, y, z));
 }
 
 /// Eq. (19) in units of L, with the weights of (17).
@@ -69,7 +75,7 @@ TEST(Field, TablesHoldTheLargestMoments) {
 TEST(Field, IsDistanceFromAFlatSurface) {
     const Window window = window_of([](int, int, int z) { return z <= c; });
     // The surface lies half-way between the last hexel and the first gap.
-    const float inside = value_at(window, c, c, c).v, outside = value_at(window, c, c, c + 1).v;
+    const float inside = value_at(window, c, c, c), outside = value_at(window, c, c, c + 1);
     EXPECT_FLOAT_EQ(inside / (inside - outside), 0.5f);
     EXPECT_NEAR(inside, -0.5f, 0.02f);
     // As printed it lies at 0.218 L above the centre.
@@ -79,19 +85,19 @@ TEST(Field, IsDistanceFromAFlatSurface) {
 
 TEST(Field, KeepsWhatIsThin) {
     const Window lone = window_of([](int x, int y, int z) { return x == c && y == c && z == c; });
-    EXPECT_FLOAT_EQ(value_at(lone, c, c, c).v, -0.5f);
-    EXPECT_GT(value_at(lone, c + 1, c, c).v, 0.4f);
+    EXPECT_FLOAT_EQ(value_at(lone, c, c, c), -0.5f);
+    EXPECT_GT(value_at(lone, c + 1, c, c), 0.4f);
     const Window sheet = window_of([](int x, int, int) { return x == c; });
-    EXPECT_FLOAT_EQ(value_at(sheet, c, c, c).v, -0.5f);
-    EXPECT_GT(value_at(sheet, c + 1, c, c).v, 0.4f);
+    EXPECT_FLOAT_EQ(value_at(sheet, c, c, c), -0.5f);
+    EXPECT_GT(value_at(sheet, c + 1, c, c), 0.4f);
     // A gap one hexel wide is the sheet's mirror image; as printed it is closed.
     const Window gap = window_of([](int x, int, int) { return x != c; });
-    EXPECT_FLOAT_EQ(value_at(gap, c, c, c).v, 0.5f);
+    EXPECT_FLOAT_EQ(value_at(gap, c, c, c), 0.5f);
     EXPECT_LT(printed_value(gap, c, c, c), 0.0);
     // So is a cluster of 2^3, which as printed has no surface at all.
     const Window cluster =
         window_of([](int x, int y, int z) { return x / 2 == c / 2 && y / 2 == c / 2 && z / 2 == c / 2; });
-    EXPECT_LE(value_at(cluster, c, c, c).v, -kLeastValue);
+    EXPECT_LE(value_at(cluster, c, c, c), -kLeastValue);
     EXPECT_GT(printed_value(cluster, c, c, c), 0.0);
 }
 
@@ -101,11 +107,45 @@ TEST(Field, SignIsPresence) {
     for (int z = 0; z < Window::kEdge; ++z)
         for (int y = 0; y < Window::kEdge; ++y)
             for (int x = 0; x < Window::kEdge; ++x) {
-                const float v = value_at(window, x, y, z).v;
+                const float v = value_at(window, x, y, z);
                 EXPECT_EQ(v < 0.0f, window.test(x, y, z));
                 EXPECT_GE(std::abs(v), kLeastValue);
                 EXPECT_LE(std::abs(v), 3.0f);
             }
+}
+
+TEST(Field, WideEqualsScalar) {
+    // Every count up to two vectors: no lane is forgotten, none runs over.
+    Random random(13);
+    for (std::size_t count = 0; count <= 33; ++count) {
+        const double share = random.uniform();
+        const Window window = window_of([&](int, int, int) { return random.uniform() < share; });
+        PointBatch points;
+        for (std::size_t k = 0; k < count; ++k) {
+            const int x = static_cast<int>(k % 9), y = static_cast<int>(k / 9);
+            points.add(moments_at(window, x, y, c), window.test(x, y, c));
+        }
+        evaluate(points);
+        const auto wide = points.value;
+        evaluate_reference(points);
+        ASSERT_EQ(std::memcmp(wide.data(), points.value.data(), count * sizeof(float)), 0);
+
+        EdgeBatch edges;
+        for (std::size_t k = 0; k + 1 < count; ++k)
+            if ((points.value[k] < 0.0f) != (points.value[k + 1] < 0.0f))
+                edges.add(points, k, k + 1, static_cast<int>(k % 3));
+        // One without any slope: its normal falls back on the edge.
+        for (auto* slope : {&edges.lower_slope, &edges.upper_slope})
+            for (auto& lane : *slope) lane[0] = 0.0f;
+        evaluate(edges);
+        const auto share_of = edges.share;
+        const auto normal = edges.normal;
+        evaluate_reference(edges);
+        ASSERT_EQ(std::memcmp(share_of.data(), edges.share.data(), edges.count * sizeof(float)), 0);
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t e = 0; e < edges.count; ++e)
+                ASSERT_EQ(normal[k][e], edges.normal[k][e]) << count << ' ' << e;
+    }
 }
 
 }  // namespace calot::surface
