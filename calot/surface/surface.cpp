@@ -81,7 +81,7 @@ struct Surface::Impl {
     void redo_marked();
     void fit_ranges(std::int64_t block);
     void redo_vertices(std::int64_t block);
-    void write_vertices(std::int64_t block, const ChangedPoints* changed);
+    void write_vertices(std::int64_t block, const ChangedPoints* changed, const OldBlock* before);
     void gather();
 };
 
@@ -115,7 +115,7 @@ void Surface::Impl::rebuild() {
     grow(corner, 3 * triangles);
     parallel_for("surface.rebuild", 0, blocks, 4, [&](std::int64_t low, std::int64_t high) {
         for (std::int64_t block = low; block < high; ++block) {
-            write_vertices(block, nullptr);
+            write_vertices(block, nullptr, nullptr);
             if (grid.edges(block).triangles > 0)
                 grid.write_triangles(block,
                                      &corner[3 * std::size_t{triangle_range[static_cast<std::size_t>(block)].offset}]);
@@ -165,22 +165,26 @@ void Surface::Impl::redo_marked() {
     removed.clear();
 }
 
-/// Only vertices with a changed end are worked out anew.
+/// Only vertices with a changed end are worked out anew; the others stay, or move up where edges came or went.
 void Surface::Impl::redo_vertices(std::int64_t block) {
-    old.edges = grid.edges(block);
-    const std::size_t from = vertex_range[static_cast<std::size_t>(block)].offset;
-    std::copy_n(position_m.begin() + static_cast<std::ptrdiff_t>(from), old.edges.vertices, old.position_m.begin());
-    std::copy_n(normal.begin() + static_cast<std::ptrdiff_t>(from), old.edges.vertices, old.normal.begin());
-    std::copy_n(owner.begin() + static_cast<std::ptrdiff_t>(from), old.edges.vertices, old.owner.begin());
     ChangedPoints changed;
     const Int3 low = kBlock * grid.block_coordinates(block);
     for (const Int3& p : removed) changed.add(p - low);
+    if (!(redo[static_cast<std::size_t>(block)] & kTriangles)) {
+        write_vertices(block, &changed, nullptr);
+        return;
+    }
+    old.edges = grid.edges(block);
+    const auto from = static_cast<std::ptrdiff_t>(vertex_range[static_cast<std::size_t>(block)].offset);
+    std::copy_n(position_m.begin() + from, old.edges.vertices, old.position_m.begin());
+    std::copy_n(normal.begin() + from, old.edges.vertices, old.normal.begin());
+    std::copy_n(owner.begin() + from, old.edges.vertices, old.owner.begin());
     grid.find_edges(block);
     fit_ranges(block);
     grow(position_m, vertex_pool.end());
     grow(normal, vertex_pool.end());
     grow(owner, vertex_pool.end());
-    write_vertices(block, &changed);
+    write_vertices(block, &changed, &old);
 }
 
 namespace {
@@ -222,8 +226,9 @@ struct EndPoints {
 
 }  // namespace
 
-/// Without `changed` all vertices, otherwise those with a changed end; the others are taken over from `old`.
-void Surface::Impl::write_vertices(std::int64_t block, const ChangedPoints* changed) {
+/// Without `changed` all vertices, otherwise those with a changed end; the others are taken over from `before`, or are
+/// in place already.
+void Surface::Impl::write_vertices(std::int64_t block, const ChangedPoints* changed, const OldBlock* before) {
     const BlockEdges& edges = grid.edges(block);
     if (edges.vertices == 0) return;
     const std::size_t first = vertex_range[static_cast<std::size_t>(block)].offset;
@@ -239,11 +244,12 @@ void Surface::Impl::write_vertices(std::int64_t block, const ChangedPoints* chan
             for (std::uint32_t cut = line; cut != 0; cut &= cut - 1, ++place) {
                 const int x = __builtin_ctz(cut);
                 if ((kept >> x) & 1u) {
-                    const auto from = static_cast<std::size_t>(old.edges.place(row, 8 * axis + x)),
-                               to = first + static_cast<std::size_t>(place);
-                    position_m[to] = old.position_m[from];
-                    normal[to] = old.normal[from];
-                    owner[to] = old.owner[from];
+                    if (!before) continue;
+                    const auto from = static_cast<std::size_t>(before->edges.place(row, 8 * axis + x));
+                    const std::size_t to = first + static_cast<std::size_t>(place);
+                    position_m[to] = before->position_m[from];
+                    normal[to] = before->normal[from];
+                    owner[to] = before->owner[from];
                 } else {
                     list.edges[list.count++] = {static_cast<std::uint16_t>(place), static_cast<std::uint8_t>(x),
                                                 static_cast<std::uint8_t>(row & 7),
