@@ -161,11 +161,11 @@ void main() {
     vec4 swirl = texture(u_smooth, v_noise);
     vec3 curled = v_noise + vec3(0.22 * (swirl.gb - 0.5), 0.0);
     vec4 wisp = texture(u_smooth, 1.7 * curled + vec3(0.0, 0.0, 0.31));
-    float fall = (1.0 - r2) * (1.0 - r2);
-    // Eroded by noise: ridges of the level lines stay, the rest thins out with age.
-    float ridge = 1.0 - 2.2 * abs(wisp.g - 0.5) - 1.1 * abs(wisp.r - 0.5);
-    float worn = mix(0.20, 0.46, clamp(v_optics.z * 0.7, 0.0, 1.0));
-    float density = fall * smoothstep(worn, 0.95, ridge * (0.55 + 0.75 * fall)) * 2.0;
+    float fall = max(0.0, exp(-3.0 * r2) - 0.0498) * 1.052;   // Gaussian, 0 at the rim
+    // Torn by noise: ridges along its level lines stay, what lies between thins out with age.
+    float ridge = 1.0 - 2.4 * abs(wisp.g - 0.5) - 1.0 * abs(wisp.r - 0.5);
+    float torn = mix(0.30, 0.62, clamp(v_optics.z * 0.8, 0.0, 1.0));
+    float density = fall * smoothstep(torn, 1.0, ridge + 0.35 * fall) * 2.6;
     float soft = smoothstep(0.0, 0.004, behind) * smoothstep(0.012, 0.04, v_axial);
     float alpha = 1.0 - exp(-v_optics.x * density * soft);
     vec3 colour = v_light * (0.75 + 0.5 * wisp.r);

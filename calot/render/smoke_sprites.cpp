@@ -7,12 +7,10 @@ namespace calot::render {
 
 namespace {
 
-// Mass extinction coefficients. Smoke of sub-micrometre particles: 4 to 9 m^2/g (soot and tar, e.g. Mulholland &
-// Croarkin 2000: 8.7 m^2/g for flames). Steam: droplets of radius 3 um scatter 3 / (2 rho r) = 0.5 m^2/g. Lowered,
-// since most of what boils off is vapour that is never seen and much of the smoke condenses nearby.
-constexpr float kSmoke_m2_per_kg = 900.0f;
-constexpr float kSteam_m2_per_kg = 60.0f;
-constexpr float kMostOpticalDepth = 1.6f;
+/// Half a billboard's edge, in standard deviations of the puff: 95 % of a Gaussian seen from the front lies within.
+constexpr float kReachInRadii = 2.45f;
+constexpr float kLeastOpticalDepth = 0.004f;
+constexpr float kMostOpticalDepth = 3.0f;
 
 }  // namespace
 
@@ -25,13 +23,12 @@ void make_sprites(const View& view, std::vector<SmokeSprite>& sprites) {
         if (particle.radius_m <= 0.0f) continue;
         SmokeSprite sprite{};
         sprite.world_m = particle.position_m;
-        sprite.radius_m = 1.6f * particle.radius_m;  // noise eats its rim
-        const float area_m2 = 3.1416f * particle.radius_m * particle.radius_m;
-        const float steam = kSteam_m2_per_kg * particle.steam / area_m2,
-                    smoke = kSmoke_m2_per_kg * particle.smoke / area_m2;
-        if (steam + smoke < 0.004f) continue;
-        sprite.optical_depth = std::min(kMostOpticalDepth, steam + smoke);
-        sprite.steam_share = steam / (steam + smoke);
+        sprite.radius_m = kReachInRadii * particle.radius_m;
+        const effects::OpticalDepth depth = effects::optical_depth(particle);
+        const float sum = depth.steam + depth.smoke;
+        if (sum < kLeastOpticalDepth) continue;
+        sprite.optical_depth = std::min(kMostOpticalDepth, sum);
+        sprite.steam_share = depth.steam / sum;
         sprite.age_s = particle.age_s;
         sprite.seed = static_cast<float>(particle.seed % 65521u) / 65521.0f;
         const float x = glm::dot(particle.velocity_m_per_s, side), y = glm::dot(particle.velocity_m_per_s, above);

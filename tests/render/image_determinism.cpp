@@ -14,8 +14,7 @@ View busy_view(demo::Scene& scene) {
     view.energised = true;
     view.time_s = 1.25;
     for (std::uint32_t k = 0; k < 5; ++k)
-        view.smoke.push_back({Vec3f(0.002f * static_cast<float>(k), 0.0f, 0.01f), Vec3f(0.0f, 0.01f, 0.0f), 0.005f,
-                              1e-7f, 1e-8f, 0.3f, k * 977u});
+        view.smoke.push_back(puff(Vec3f(0.002f * static_cast<float>(k), 0.0f, 0.01f), 0.004f, 1e-7f, 1e-8f, k * 977u));
     return view;
 }
 

@@ -36,7 +36,7 @@ TEST_F(Pictures, every_quality_draws_the_same_scene_without_errors) {
     View view = scene.view();
     view.instrument = demo::Scene::hook(Vec3(0.006, -0.004, 0.0));
     view.energised = true;
-    view.smoke.push_back({Vec3f(0.0f, 0.0f, 0.01f), Vec3f(0.0f, 0.01f, 0.0f), 0.006f, 1e-7f, 1e-8f, 0.5f, 17u});
+    view.smoke.push_back(puff(Vec3f(0.0f, 0.0f, 0.01f), 0.005f, 1e-7f, 1e-8f));
     Vec3 first(0.0);
     for (const Quality quality : {Quality::low, Quality::medium, Quality::high}) {
         Renderer renderer(kWidth, kHeight, quality);
@@ -141,11 +141,7 @@ TEST_F(Pictures, steam_hides_the_view_and_smoke_is_darker) {
     Renderer renderer(kWidth, kHeight, Quality::medium);
     View view = sheet(kFatOnly, 320.0f + 273.15f);
     const double clear = luma(mean_about(picture(renderer, view), kWidth / 2, kHeight / 2, 8));
-    effects::SmokeParticle particle;
-    particle.position_m = Vec3f(0.0f, 0.0f, 0.012f);
-    particle.radius_m = 0.012f;
-    particle.steam = 1e-4f;
-    view.smoke = {particle};
+    view.smoke = {puff(Vec3f(0.0f, 0.0f, 0.012f), 0.008f, 1e-4f, 0.0f)};
     const double steam = luma(mean_about(picture(renderer, view), kWidth / 2, kHeight / 2, 8));
     view.smoke[0].steam = 0.0f;
     view.smoke[0].smoke = 1e-4f;

@@ -55,6 +55,19 @@ inline Image picture(Renderer& renderer, const View& view) {
     return renderer.read();
 }
 
+inline effects::SmokeParticle puff(const Vec3f& position_m, float radius_m, float steam_kg, float smoke_kg,
+                                   std::uint32_t seed = 1) {
+    effects::SmokeParticle particle;
+    particle.position_m = position_m;
+    particle.velocity_m_per_s = Vec3f(0.0f, 0.01f, 0.0f);
+    particle.radius_m = radius_m;
+    particle.steam = steam_kg;
+    particle.smoke = smoke_kg;
+    particle.age_s = 0.4f;
+    particle.seed = seed;
+    return particle;
+}
+
 /// A flat sheet of one look facing the camera at 60 mm: what a colour test looks at.
 inline View sheet(const float (&weights)[4], float peak_K = 310.15f, float exposure = 0.0f) {
     View view;
