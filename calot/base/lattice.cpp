@@ -35,16 +35,16 @@ Lattice Lattice::make(const Vec3& origin_m, double spacing_m, const Int3& size) 
 }
 
 Int3 Lattice::coordinates(std::int64_t index) const {
-    // The fast axis has stride 1. No general sort: this is called inside steps.
-    const int fast = stride.x == 1 ? 0 : stride.y == 1 ? 1 : 2;
-    int middle = (fast + 1) % 3, slow = (fast + 2) % 3;
-    if (stride[middle] > stride[slow]) std::swap(middle, slow);
+    // From the slowest axis to the fastest; strides differ, and this is called often enough not to sort them.
+    const int slow = stride.x > stride.y ? (stride.x > stride.z ? 0 : 2) : (stride.y > stride.z ? 1 : 2);
+    const int fast = stride.x < stride.y ? (stride.x < stride.z ? 0 : 2) : (stride.y < stride.z ? 1 : 2);
+    const int middle = 3 - slow - fast;
     const std::int64_t rest = index - first;
-    const std::int64_t in_plane = rest % stride[slow];
     Int3 c{0};
     c[slow] = static_cast<int>(rest / stride[slow]);
-    c[middle] = static_cast<int>(in_plane / stride[middle]);
-    c[fast] = static_cast<int>(in_plane % stride[middle]);
+    const auto in_plane = static_cast<int>(rest % stride[slow]);
+    c[middle] = in_plane / stride[middle];
+    c[fast] = in_plane % stride[middle];
     return c;
 }
 

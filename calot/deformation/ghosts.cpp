@@ -13,10 +13,13 @@ void list_ghosts(const tissue::Model& model, Work& work) {
         if (model.phyxel_ghost.test(p)) work.mirrors.push_back({static_cast<std::int32_t>(p), 0, {}, {}});
 }
 
+const Mirror& find_mirror(const Work& work, std::int64_t ghost) {
+    return *std::lower_bound(work.mirrors.begin(), work.mirrors.end(), ghost,
+                             [](const Mirror& mirror, std::int64_t cell) { return mirror.ghost < cell; });
+}
+
 void refresh_mirror(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t ghost) {
-    const auto found = std::lower_bound(work.mirrors.begin(), work.mirrors.end(), ghost,
-                                        [](const Mirror& mirror, std::int64_t cell) { return mirror.ghost < cell; });
-    Mirror& mirror = *found;
+    Mirror& mirror = const_cast<Mirror&>(find_mirror(work, ghost));
     mirror.count = 0;
     for (const double wanted : {kFaceWeight, kEdgeWeight}) {
         if (mirror.count > 0) break;

@@ -3,9 +3,10 @@
 //
 //   u_ghost = 2 u_face - mean of u over its face neighbours (over its edge neighbours where it has no others),
 //
-// so that halfway between, at the held face itself, displacement is that of the organ: zero, or what it is moved by. With u_ghost = 0 (a fixed layer) it vanishes
-// at the ghosts' centres, half a cell too deep: held bodies then sag two to ten times as far off (docs/validation.md).
-// Energies are of phyxels alone; what they pull at a ghost acts, by the chain rule, on the phyxels that it mirrors.
+// so that halfway between, at the held face itself, displacement is that of the organ: zero, or what it is moved by.
+// With u_ghost = 0 (a fixed layer) it vanishes at the ghosts' centres, half a cell too deep: held bodies then sag two
+// to ten times as far off (docs/validation.md). Energies are of phyxels alone; what they pull at a ghost acts, by the
+// chain rule, on the phyxels that it mirrors.
 
 #include "calot/deformation/work.h"
 
@@ -13,6 +14,9 @@ namespace calot::deformation {
 
 /// Lists all ghosts in Work::mirrors, without phyxels.
 void list_ghosts(const tissue::Model& model, Work& work);
+
+/// The mirror of a ghost.
+const Mirror& find_mirror(const Work& work, std::int64_t ghost);
 
 /// Finds out anew which phyxels a ghost mirrors. Its links must be current.
 void refresh_mirror(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t ghost);

@@ -18,7 +18,7 @@ namespace {
 
 /// Cells of a parallel task: big enough that handing it out costs nothing, and fixed, so that it never depends on
 /// threads.
-constexpr std::int64_t kChunk = 4096;
+constexpr std::int64_t kChunk = 8192;
 static_assert(kChunk % kKernelGrain == 0);
 
 std::int64_t first_bad_cell(const Model& model, const State& state) {
@@ -86,6 +86,7 @@ void update_gradients(const Model& model, const State& state, Work& work) {
 void integrate(const Model& model, State& state, tissue::Exchange& exchange, Work& work) {
     exchange.contact_force_N = Vec3(0.0);
     if (!state.status.ok) return;
+    prepare_contacts(model, state, exchange, work);
     const KernelView view = KernelView::make(model, state, work);
     const std::int64_t first = model.phyxels.first, last = model.phyxels.last;
     for (int substep = 0; substep < work.substeps; ++substep) {
@@ -94,12 +95,14 @@ void integrate(const Model& model, State& state, tissue::Exchange& exchange, Wor
         parallel_for("deformation.velocities", first, last, kChunk,
                      [&](std::int64_t low, std::int64_t high) { sweep_velocities(view, low, high); });
         return_ghost_impulses(state, work, view.decay);
+        solve_contacts(model, state, work);
         parallel_for("deformation.displacements", first, last, kChunk,
                      [&](std::int64_t low, std::int64_t high) { sweep_displacements(view, low, high); });
         move_ghosts(state, work);
         parallel_for("deformation.gradients", first, last, kChunk,
                      [&](std::int64_t low, std::int64_t high) { sweep_gradients(view, low, high); });
     }
+    exchange.contact_force_N = work.contact.impulse_Ns / -model.tick_s;
     if (!all_finite(model, state)) state.status = {false, "displacement_m", first_bad_cell(model, state), state.tick};
 }
 

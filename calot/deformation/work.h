@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calot/base/array.h"
+#include "calot/deformation/contact.h"
 #include "calot/tissue/exchange.h"
 #include "calot/tissue/state.h"
 
@@ -46,6 +47,8 @@ struct Work {
     Array<std::int64_t> search_stack;    ///< [phyxels.cells]
     std::uint32_t search = 0;            ///< number of the last search
     Array<float> hexel_weight;           ///< [m^3][27] kernel of hexel centres towards the 3^3 phyxels about their own
+
+    ContactWork contact;  ///< one tick's contact points
 
     int substeps = 1;
     float substep_s = 1e-3f;
