@@ -11,7 +11,7 @@ namespace calot::surface {
 
 struct SmoothingParameters {
     int position_passes = 2;
-    int normal_passes = 3;
+    int normal_passes = 4;
     float inward = 0.6f;   ///< share of the way to the neighbours' middle
     float outward = 0.3f;  ///< and back
     float bound = 0.5f;    ///< a vertex moves at most so many spacings along each axis
