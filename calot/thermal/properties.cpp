@@ -73,6 +73,9 @@ Properties Properties::make(const tissue::Model& model) {
     const bool threshold = thermal.phase_model == tissue::PhaseModel::threshold;
     Properties p;
     p.wet_limit_K = static_cast<float>(thermal.boiling_temperature_K - thermal.body_temperature_K);
+    const double unhurt = static_cast<double>(kDamageThreshold_K) - thermal.body_temperature_K;
+    // Water follows H, down as well as up, with a threshold: no short cut.
+    p.quick_rise_K = threshold ? -1e30f : std::min(static_cast<float>(unhurt), p.wet_limit_K);
     p.dry_capacity_J_per_m3K.fill(1.0f);  // "none": any number but zero
     for (std::size_t m = 1; m < model.materials.size(); ++m) {
         const tissue::Material& material = model.materials[m];
@@ -89,6 +92,7 @@ Properties Properties::make(const tissue::Model& model) {
         p.dry_capacity_J_per_m3K[m] = curve.dry_capacity_J_per_m3K;
         p.water_capacity_J_per_kgK[m] = curve.water_capacity_J_per_kgK;
         p.dry_limit_K[m] = curve.dry_limit_K;
+        p.quick_rise_K = std::min(p.quick_rise_K, curve.dry_limit_K);
         p.boil_off_J_per_kg[m] = static_cast<float>(
             kLatentHeatOfWater_J_per_kg + static_cast<double>(curve.water_capacity_J_per_kgK * curve.wet_limit_K));
         const double plateau =

@@ -72,6 +72,7 @@ struct Properties {
     PerMaterial<float> damage_log_rate{};  ///< ln of the rate [1/s] at kDamageReference_K
     PerMaterial<float> damage_slope{};     ///< Ea / (R T_ref)
     float wet_limit_K = 0.0f;              ///< boiling - T_0
+    float quick_rise_K = 0.0f;             ///< up to here nothing boils, is hurt or changes phase
     float longest_step_s = 0.0f;           ///< stable for every material and pair of materials
 
     static Properties make(const tissue::Model& model);

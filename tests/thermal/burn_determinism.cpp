@@ -132,6 +132,7 @@ void compare_kernels(tissue::PhaseModel phase, std::uint64_t seed) {
     }
     for (std::int64_t i = lattice.first; i < lattice.last; ++i) {
         const auto h = static_cast<std::size_t>(i);
+        if (!wide.state.hexel_present.test(i)) continue;
         // Kernels differ in the order of sums within a hexel: a few of the last digits of H, w and T.
         ASSERT_NEAR(wide.state.enthalpy_J_per_m3[h], plain.state.enthalpy_J_per_m3[h], 600.0f) << i;
         ASSERT_NEAR(wide.state.water_kg_per_m3[h], plain.state.water_kg_per_m3[h], 2e-4f) << i;
