@@ -65,34 +65,31 @@ Window joule_window(const Lattice& lattice, const tissue::JouleHeat& joule) {
     return w;
 }
 
-/// Adds q dt to one plane of the window. Returns what was added [J/m^3], after rounding.
-double deposit_plane(const tissue::Model& model, tissue::State& state, const tissue::JouleHeat& joule, const Window& w,
-                     int plane, float dt_s) {
+/// Adds q dt to one plane of the window, tile by tile. Returns what was added [J/m^3].
+double deposit_plane(const tissue::Model& model, const HeatStep& step, const tissue::JouleHeat& joule, const Window& w,
+                     int plane) {
     const Int3 source_stride(1, joule.size.x, joule.size.x * joule.size.y);
-    const int step = source_stride[w.fast];
+    const std::ptrdiff_t fast_step = source_stride[w.fast], middle_step = source_stride[w.middle];
     double added = 0.0;
     Int3 cell = w.low;
     cell[w.slow] = plane;
-    for (cell[w.middle] = w.low[w.middle]; cell[w.middle] < w.high[w.middle]; ++cell[w.middle]) {
-        const std::int64_t first = model.hexels.index(cell);
-        const Int3 in_window = cell - joule.low;
-        const float* density = joule.density_W_per_m3.data() + in_window.x * source_stride.x +
-                               in_window.y * source_stride.y + in_window.z * source_stride.z;
-        const int count = w.high[w.fast] - w.low[w.fast];
-        for (int k = 0; k < count; ++k) {
-            const float heat = density[static_cast<std::ptrdiff_t>(k) * step] * dt_s;
-            if (heat == 0.0f || !state.hexel_present.test(first + k)) continue;
-            float& enthalpy = state.enthalpy_J_per_m3[static_cast<std::size_t>(first + k)];
-            const float next = enthalpy + heat;
-            added += static_cast<double>(next) - static_cast<double>(enthalpy);
-            enthalpy = next;
+    for (cell[w.middle] = w.low[w.middle]; cell[w.middle] < w.high[w.middle]; cell[w.middle] += kTile)
+        for (cell[w.fast] = w.low[w.fast]; cell[w.fast] < w.high[w.fast]; cell[w.fast] += kTile) {
+            const int rows = std::min(kTile, w.high[w.middle] - cell[w.middle]);
+            const int columns = std::min(kTile, w.high[w.fast] - cell[w.fast]);
+            const Int3 in_window = cell - joule.low;
+            const float* source = joule.density_W_per_m3.data() + in_window.x + in_window.y * source_stride.y +
+                                  std::ptrdiff_t{in_window.z} * source_stride.z;
+            alignas(64) HeatTile tile = {};
+            for (int k = 0; k < columns; ++k)
+                for (int row = 0; row < rows; ++row) tile[row][k] = source[k * fast_step + row * middle_step];
+            added += deposit_tile(step, tile, model.hexels.index(cell), model.hexels.stride[w.middle], rows, columns);
         }
-    }
     return added;
 }
 
 void deposit_joule_heat(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,
-                        double dt_s) {
+                        const HeatStep& step) {
     const tissue::JouleHeat& joule = exchange.joule;
     const Window w = joule_window(model.hexels, joule);
     if (w.empty()) return;
@@ -100,7 +97,7 @@ void deposit_joule_heat(const tissue::Model& model, tissue::State& state, const 
     parallel_for("thermal.joule", low, high, 8, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t plane = begin; plane < end; ++plane)
             work.plane_sums[static_cast<std::size_t>(plane)] =
-                deposit_plane(model, state, joule, w, static_cast<int>(plane), static_cast<float>(dt_s));
+                deposit_plane(model, step, joule, w, static_cast<int>(plane));
     });
     double added = 0.0;
     for (std::int64_t plane = low; plane < high; ++plane) added += work.plane_sums[static_cast<std::size_t>(plane)];
@@ -165,7 +162,7 @@ void advance(const tissue::Model& model, tissue::State& state, const tissue::Exc
              double dt_s) {
     const HeatStep step = make_step(model, state, work, dt_s);
     find_active_blocks(model, exchange, step, work);
-    deposit_joule_heat(model, state, exchange, work, dt_s);
+    deposit_joule_heat(model, state, exchange, work, step);
     std::fill_n(work.sums.begin(), work.blocks.size(), BlockSums{});
     const auto conduct_kernel = work.scalar ? conduct_cells_scalar : conduct_cells;
     const auto settle_kernel = work.scalar ? settle_cells_scalar : settle_cells;

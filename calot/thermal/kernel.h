@@ -32,6 +32,15 @@ struct HeatStep {
     float* steam_kg_per_m3;
 };
 
+/// Joule heat [W/m^3] in the order of the lattice: rows of a cache line each.
+inline constexpr int kTile = 16;
+using HeatTile = float[kTile][kTile];
+
+/// Adds q dt to the present hexels of a tile whose rows begin at first + row * stride. Returns the sum of what was
+/// added, after rounding [J/m^3].
+double deposit_tile(const HeatStep& step, const HeatTile& density_W_per_m3, std::int64_t first, std::int64_t stride,
+                    int rows, int columns);
+
 /// Whether any hexel of the cells [begin, end) is not at body temperature.
 bool is_warm(const HeatStep& step, std::int64_t begin, std::int64_t end);
 

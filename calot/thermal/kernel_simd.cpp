@@ -96,6 +96,36 @@ HWY_INLINE F exponential(F x) {
     return hn::Mul(series, hn::BitCast(d, power));
 }
 
+double deposit_tile(const HeatStep& step, const HeatTile& density, std::int64_t first, std::int64_t stride, int rows,
+                    int columns) {
+    const D d;
+    const auto lanes = static_cast<int>(hn::Lanes(d));
+    const F dt = number(step.dt_s);
+    F sum = hn::Zero(d);
+    double rest = 0.0;
+    for (int row = 0; row < rows; ++row) {
+        const std::int64_t i = first + row * stride;
+        const std::uint64_t present = word_at(step.present, i) & ((std::uint64_t{1} << columns) - 1);
+        if (present == 0) continue;
+        float* enthalpy = step.enthalpy_J_per_m3 + i;
+        int k = 0;
+        for (; k + lanes <= columns; k += lanes) {
+            const F before = hn::LoadU(d, enthalpy + k);
+            const F heat = hn::IfThenElseZero(mask_of(present, k), hn::Mul(hn::Load(d, density[row] + k), dt));
+            const F next = hn::Add(before, heat);
+            sum = hn::Add(sum, hn::Sub(next, before));
+            hn::StoreU(next, d, enthalpy + k);
+        }
+        for (; k < columns; ++k) {  // cells beyond belong to other threads
+            if (((present >> k) & 1u) == 0) continue;
+            const float next = enthalpy[k] + density[row][k] * step.dt_s;
+            rest += static_cast<double>(next - enthalpy[k]);
+            enthalpy[k] = next;
+        }
+    }
+    return rest + sum_of(sum);
+}
+
 bool is_warm(const HeatStep& step, std::int64_t begin, std::int64_t end) {
     const D d;
     const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
@@ -355,10 +385,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace calot::thermal {
 
+HWY_EXPORT(deposit_tile);
 HWY_EXPORT(is_warm);
 HWY_EXPORT(conduct_cells);
 HWY_EXPORT(settle_cells);
 
+double deposit_tile(const HeatStep& step, const HeatTile& density_W_per_m3, std::int64_t first, std::int64_t stride,
+                    int rows, int columns) {
+    return HWY_DYNAMIC_DISPATCH(deposit_tile)(step, density_W_per_m3, first, stride, rows, columns);
+}
 bool is_warm(const HeatStep& step, std::int64_t begin, std::int64_t end) {
     return HWY_DYNAMIC_DISPATCH(is_warm)(step, begin, end);
 }
