@@ -66,8 +66,8 @@ Window joule_window(const Lattice& lattice, const tissue::JouleHeat& joule) {
 }
 
 /// Adds q dt to one plane of the window, tile by tile. Returns what was added [J/m^3].
-double deposit_plane(const tissue::Model& model, const HeatStep& step, const tissue::JouleHeat& joule, const Window& w,
-                     int plane) {
+double deposit_plane(const tissue::Model& model, const tissue::State& state, const HeatStep& step,
+                     const tissue::JouleHeat& joule, const Window& w, int plane) {
     const Int3 source_stride(1, joule.size.x, joule.size.x * joule.size.y);
     const std::ptrdiff_t fast_step = source_stride[w.fast], middle_step = source_stride[w.middle];
     double added = 0.0;
@@ -77,13 +77,17 @@ double deposit_plane(const tissue::Model& model, const HeatStep& step, const tis
         for (cell[w.fast] = w.low[w.fast]; cell[w.fast] < w.high[w.fast]; cell[w.fast] += kTile) {
             const int rows = std::min(kTile, w.high[w.middle] - cell[w.middle]);
             const int columns = std::min(kTile, w.high[w.fast] - cell[w.fast]);
+            const std::int64_t first = model.hexels.index(cell), stride = model.hexels.stride[w.middle];
+            std::uint32_t present = 0;
+            for (int row = 0; row < rows; ++row) present |= state.hexel_present.bits32(first + row * stride);
+            if ((present & ((1u << columns) - 1u)) == 0) continue;
             const Int3 in_window = cell - joule.low;
             const float* source = joule.density_W_per_m3.data() + in_window.x + in_window.y * source_stride.y +
                                   std::ptrdiff_t{in_window.z} * source_stride.z;
             alignas(64) HeatTile tile = {};
             for (int k = 0; k < columns; ++k)
                 for (int row = 0; row < rows; ++row) tile[row][k] = source[k * fast_step + row * middle_step];
-            added += deposit_tile(step, tile, model.hexels.index(cell), model.hexels.stride[w.middle], rows, columns);
+            added += deposit_tile(step, tile, first, stride, rows, columns);
         }
     return added;
 }
@@ -97,7 +101,7 @@ void deposit_joule_heat(const tissue::Model& model, tissue::State& state, const 
     parallel_for("thermal.joule", low, high, 8, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t plane = begin; plane < end; ++plane)
             work.plane_sums[static_cast<std::size_t>(plane)] =
-                deposit_plane(model, step, joule, w, static_cast<int>(plane));
+                deposit_plane(model, state, step, joule, w, static_cast<int>(plane));
     });
     double added = 0.0;
     for (std::int64_t plane = low; plane < high; ++plane) added += work.plane_sums[static_cast<std::size_t>(plane)];

@@ -77,10 +77,26 @@ class PropertyLookup {
     hn::Vec<DI> index_ = hn::Zero(DI());
 };
 
-/// Pairwise, which is quicker and more exact than one after the other.
-HWY_INLINE double sum_of(F values) {
-    return static_cast<double>(hn::GetLane(hn::SumOfLanes(D(), values)));
-}
+/// A sum over cells in 16 partial sums, cell i in that of i mod 16, so that it does not depend on how wide vectors are.
+class CellSum {
+  public:
+    /// `k` counts cells from a multiple of 16 on.
+    HWY_INLINE void add(std::int64_t k, F values) {
+        float* partial = partial_ + k % 16;
+        hn::Store(hn::Add(hn::Load(D(), partial), values), D(), partial);
+    }
+    HWY_INLINE void add_one(std::int64_t k, float value) { partial_[k % 16] += value; }
+    /// Pairwise, which is more exact than one after the other.
+    HWY_INLINE double total() const {
+        float sums[8];
+        for (int k = 0; k < 8; ++k) sums[k] = partial_[k] + partial_[k + 8];
+        for (int k = 0; k < 4; ++k) sums[k] += sums[k + 4];
+        return static_cast<double>((sums[0] + sums[2]) + (sums[1] + sums[3]));
+    }
+
+  private:
+    HWY_ALIGN float partial_[16] = {};
+};
 
 /// e^x for x in [-87, 87], to 2e-7: x = n ln 2 + r, Taylor's series in |r| <= ln 2 / 2 (the first term left out is
 /// r^8/8! = 5e-9).
@@ -101,8 +117,7 @@ double deposit_tile(const HeatStep& step, const HeatTile& density, std::int64_t 
     const D d;
     const auto lanes = static_cast<int>(hn::Lanes(d));
     const F dt = number(step.dt_s);
-    F sum = hn::Zero(d);
-    double rest = 0.0;
+    CellSum sum;
     for (int row = 0; row < rows; ++row) {
         const std::int64_t i = first + row * stride;
         const std::uint64_t present = word_at(step.present, i) & ((std::uint64_t{1} << columns) - 1);
@@ -113,17 +128,17 @@ double deposit_tile(const HeatStep& step, const HeatTile& density, std::int64_t 
             const F before = hn::LoadU(d, enthalpy + k);
             const F heat = hn::IfThenElseZero(mask_of(present, k), hn::Mul(hn::Load(d, density[row] + k), dt));
             const F next = hn::Add(before, heat);
-            sum = hn::Add(sum, hn::Sub(next, before));
+            sum.add(k, hn::Sub(next, before));
             hn::StoreU(next, d, enthalpy + k);
         }
         for (; k < columns; ++k) {  // cells beyond belong to other threads
             if (((present >> k) & 1u) == 0) continue;
             const float next = enthalpy[k] + density[row][k] * step.dt_s;
-            rest += static_cast<double>(next - enthalpy[k]);
+            sum.add_one(k, next - enthalpy[k]);
             enthalpy[k] = next;
         }
     }
-    return rest + sum_of(sum);
+    return sum.total();
 }
 
 bool is_warm(const HeatStep& step, std::int64_t begin, std::int64_t end) {
@@ -225,7 +240,7 @@ void conduct_cells(const HeatStep& shared, std::int64_t begin, std::int64_t end,
     const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
     const F body = number(step.body_K), zero = hn::Zero(d);
     const F surface_factor = number(step.surface_factor), conduction_factor = number(step.conduction_factor);
-    F perfusion = zero, surface = zero;
+    CellSum perfusion, surface;
     for (std::int64_t word = begin; word < end; word += kWordCells) {
         const Surroundings around = look_around(step, word);
         for (std::int64_t k = 0; around.present != 0 && k < kWordCells; k += lanes) {
@@ -245,7 +260,7 @@ void conduct_cells(const HeatStep& shared, std::int64_t begin, std::int64_t end,
                 const F flow = conduction_inside(step, i, own_K, conductivity);
                 const F conducted = hn::Add(before, hn::Mul(conduction_factor, flow));
                 next = hn::Sub(conducted, hn::Mul(perfused_per_K, rise));
-                perfusion = hn::Add(perfusion, hn::IfThenElseZero(mask, hn::Sub(conducted, next)));
+                perfusion.add(k, hn::IfThenElseZero(mask, hn::Sub(conducted, next)));
             } else {
                 const Faces faces = group == kMixedGroup
                                         ? conduction_anywhere<true>(step, around, word, k, own_K, conductivity)
@@ -258,16 +273,16 @@ void conduct_cells(const HeatStep& shared, std::int64_t begin, std::int64_t end,
                 F gas = hn::Mul(hn::Mul(to_gas, faces.gas), hn::Sub(own_K, number(step.gas_K)));
                 gas = hn::Min(hn::IfThenElseZero(hn::Gt(rise, zero), gas), hn::Max(held, zero));
                 next = hn::Sub(held, gas);
-                perfusion = hn::Add(perfusion, hn::IfThenElseZero(mask, hn::Sub(conducted, perfused)));
+                perfusion.add(k, hn::IfThenElseZero(mask, hn::Sub(conducted, perfused)));
                 const F lost = hn::Add(hn::Sub(perfused, held), hn::Sub(held, next));
-                surface = hn::Add(surface, hn::IfThenElseZero(mask, lost));
+                surface.add(k, hn::IfThenElseZero(mask, lost));
             }
             // Masked stores are slow; absent cells get back what they had.
             hn::Store(hn::IfThenElse(mask, next, before), d, step.enthalpy_J_per_m3 + i);
         }
     }
-    sums.perfusion += sum_of(perfusion);
-    sums.surface += sum_of(surface);
+    sums.perfusion += perfusion.total();
+    sums.surface += surface.total();
 }
 
 /// Steam of the lanes above the boiling point; returns it [kg/m^3] and changes water and enthalpy.
@@ -292,7 +307,7 @@ HWY_INLINE F add_damage(const HeatStep& step, const PropertyLookup& of, F now_K,
 
 /// Sums over a block, lane by lane.
 struct SettleSums {
-    F gas, latent;
+    CellSum gas, latent;
     Mask spent;
 };
 
@@ -335,8 +350,8 @@ HWY_INLINE void settle_vector(const HeatStep& step, std::int64_t i, Mask mask, S
         if (HWY_UNLIKELY(!hn::AllFalse(d, boils))) {
             F after = enthalpy, left = water;
             const F steam = hn::IfThenElseZero(boils, boil(excess, of(p.boil_off_J_per_kg), left, after));
-            lanes.gas = hn::Add(lanes.gas, hn::IfThenElseZero(boils, hn::Sub(enthalpy, after)));
-            lanes.latent = hn::Add(lanes.latent, hn::Mul(steam, latent_heat));
+            lanes.gas.add(i, hn::IfThenElseZero(boils, hn::Sub(enthalpy, after)));
+            lanes.latent.add(i, hn::Mul(steam, latent_heat));
             enthalpy = hn::IfThenElse(boils, after, enthalpy);
             water = hn::IfThenElse(boils, left, water);
             capacity = hn::Add(dry_capacity, hn::Mul(water, water_capacity));
@@ -365,15 +380,15 @@ void settle_cells(const HeatStep& shared, std::int64_t begin, std::int64_t end, 
     const HeatStep step = shared;  // a copy of its own stays in registers
     const D d;
     const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
-    SettleSums found{hn::Zero(d), hn::Zero(d), hn::FirstN(d, 0)};
+    SettleSums found{{}, {}, hn::FirstN(d, 0)};
     for (std::int64_t word = begin; word < end; word += kWordCells) {
         const std::uint64_t present = word_at(step.present, word);
         for (std::int64_t k = 0; present != 0 && k < kWordCells; k += lanes)
             if (lanes_of(present, k) != 0) settle_vector(step, word + k, mask_of(present, k), found, sums);
     }
     if (sums.boiled) {
-        sums.gas += sum_of(found.gas);
-        sums.latent += sum_of(found.latent);
+        sums.gas += found.gas.total();
+        sums.latent += found.latent.total();
     }
     sums.spent |= !hn::AllFalse(d, found.spent);
 }

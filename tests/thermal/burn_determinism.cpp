@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <new>
 
+#include <hwy/targets.h>
+
 #include "calot/base/parallel.h"
 #include "thermal/burn_bodies.h"
 
@@ -66,6 +68,22 @@ TEST(HeatDeterminism, ThreadsGiveTheSameBytes) {
     const std::uint64_t one = tissue::hash(burn(1));
     EXPECT_EQ(tissue::hash(burn(2)), one);
     EXPECT_EQ(tissue::hash(burn(4)), one);
+}
+
+TEST(HeatDeterminism, InstructionSetsGiveTheSameBytes) {
+    const std::uint64_t widest = tissue::hash(burn(1));
+    const std::int64_t all = hwy::SupportedTargets();
+    int compared = 0;
+    for (std::int64_t target = 1; target > 0 && target <= all; target <<= 1) {
+        if ((all & target) == 0) continue;
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        EXPECT_EQ(tissue::hash(burn(1)), widest) << hwy::TargetName(target);
+        ++compared;
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    EXPECT_GT(compared, 0);
 }
 
 TEST(HeatDeterminism, SkippingColdBlocksChangesNothing) {
