@@ -171,6 +171,10 @@ void refresh_phyxel(const Model& model, const State& state, Work& work, std::int
     store_mass(model, state, work, phyxel);
     for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
         if (state.phyxel_present.test(other)) store_mass(model, state, work, other);
+        if (!model.phyxel_ghost.test(other)) return;
+        const Mirror& mirror = find_mirror(work, other);
+        for (int k = 0; k < mirror.count; ++k)
+            store_mass(model, state, work, mirror.phyxel[static_cast<std::size_t>(k)]);
     });
 }
 

@@ -1,0 +1,105 @@
+// The explicit step is stable on whatever shape is left: leapfrog needs omega dt < 2 for the highest frequency omega.
+
+#include <gtest/gtest.h>
+
+#include "tests/deformation/bodies.h"
+
+namespace calot::deformation::test {
+
+namespace {
+
+/// Highest frequency of small motions about rest, times the substep, by power iteration (from below, to some 1 %).
+double highest_omega_dt(const Body& body) {
+    constexpr double kSize_m = 1e-9;  // small enough for forces to be linear, far above the rounding of doubles
+    Reference<double> reference(body.model, body.state, body.work);
+    auto mass = [&](std::size_t i) { return 1.0 / std::max(1e-300, reference.inverse_mass_per_kg[i]); };
+    std::vector<Vec3>& u = reference.displacement_m;
+    Random random(1);
+    body.for_each_phyxel([&](std::int64_t p) {
+        u[static_cast<std::size_t>(p)] = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    });
+    double omega2 = 0.0;
+    for (int iteration = 0; iteration < 100; ++iteration) {
+        double norm2 = 0.0;
+        body.for_each_phyxel([&](std::int64_t p) {
+            const auto i = static_cast<std::size_t>(p);
+            norm2 += mass(i) * glm::dot(u[i], u[i]);
+        });
+        body.for_each_phyxel([&](std::int64_t p) { u[static_cast<std::size_t>(p)] *= kSize_m / std::sqrt(norm2); });
+        reference.update_gradients();
+        reference.update_forces();
+        omega2 = 0.0;
+        body.for_each_phyxel([&](std::int64_t p) {
+            const auto i = static_cast<std::size_t>(p);
+            omega2 -= glm::dot(reference.force_N[i], u[i]) / (kSize_m * kSize_m);
+            u[i] = -reference.inverse_mass_per_kg[i] * reference.force_N[i];
+        });
+    }
+    return std::sqrt(omega2) * static_cast<double>(body.work.substep_s);
+}
+
+constexpr double kLimit = 2.0;
+
+/// Takes from each phyxel a share of its hexels of its own, from none to all.
+void thin_out(Body& body, std::uint64_t seed) {
+    Random random(seed);
+    const int m = body.model.hexels_per_edge;
+    body.for_each_phyxel([&](std::int64_t p) {
+        const double share = random.uniform();
+        const Int3 low = body.model.phyxels.coordinates(p) * m;
+        for (int bit = 0; bit < m * m * m; ++bit)
+            if (random.uniform() < share)
+                body.state.hexel_present.clear(
+                    body.model.hexels.index(low + Int3(bit % m, bit / m % m, bit / (m * m))));
+    });
+    body.refresh();
+}
+
+}  // namespace
+
+TEST(Stability, OfWholeAndSlenderBodies) {
+    for (const bool held : {false, true})
+        for (const Int3& size : {Int3(2, 2, 2), Int3(2, 2, 6), Int3(2, 6, 6), Int3(6, 6, 6)}) {
+            const Body body(block(size, held));
+            EXPECT_LT(highest_omega_dt(body), 0.85 * kLimit) << size.x << ' ' << size.y << ' ' << size.z << ' ' << held;
+        }
+}
+
+TEST(Stability, OfBurntBodies) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed)
+        for (const double severed : {0.0, 0.2, 0.5, 0.7, 0.9}) {
+            Body evenly(block({6, 5, 6}, true));
+            wound(evenly, 0.5, severed, seed);
+            EXPECT_LT(highest_omega_dt(evenly), kLimit) << "seed " << seed << ", severed " << severed;
+            Body unevenly(block({6, 5, 6}, true));
+            thin_out(unevenly, seed);
+            wound(unevenly, 0.0, severed, seed);
+            EXPECT_LT(highest_omega_dt(unevenly), kLimit) << "seed " << seed << ", severed " << severed;
+        }
+}
+
+// Hexels of fat and of duct, a hundred times as stiff, thrown together.
+TEST(Stability, OfMixedTissues) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed)
+        for (const double severed : {0.0, 0.5}) {
+            tissue::Model model = block({6, 5, 6}, true);
+            const tissue::MaterialIndex duct = tissue::find_material(model.materials, "cystic_duct");
+            ASSERT_NE(duct, tissue::kNoMaterial);
+            Random random(seed);
+            for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
+                if (!model.phyxel_initial.test(p)) continue;
+                const double share = std::max(0.0, random.uniform(-1.0, 1.0));
+                const Int3 low = model.phyxels.coordinates(p) * 4;
+                for (int bit = 0; bit < 64; ++bit)
+                    if (random.uniform() < share)
+                        model.hexel_material[static_cast<std::size_t>(
+                            model.hexels.index(low + Int3(bit % 4, bit / 4 % 4, bit / 16)))] = duct;
+            }
+            tissue::prepare_time_step(model);
+            Body body(std::move(model));
+            wound(body, 0.1, severed, seed);
+            EXPECT_LT(highest_omega_dt(body), kLimit) << "seed " << seed << ", severed " << severed;
+        }
+}
+
+}  // namespace calot::deformation::test
