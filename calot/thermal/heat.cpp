@@ -105,7 +105,9 @@ void deposit_joule_heat(const tissue::Model& model, tissue::State& state, const 
     });
     double added = 0.0;
     for (std::int64_t plane = low; plane < high; ++plane) added += work.plane_sums[static_cast<std::size_t>(plane)];
-    state.energy_J.delivered += added * model.hexel_volume_m3();
+    const double outflow_J = joule.outflow_W * static_cast<double>(step.dt_s);
+    state.energy_J.outflow += outflow_J;
+    state.energy_J.delivered += added * model.hexel_volume_m3() + outflow_J;
 }
 
 /// Blocks that share a face with cells of a block, itself included.

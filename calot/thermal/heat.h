@@ -54,8 +54,8 @@ float temperature_K(const tissue::Model& model, const tissue::State& state, std:
 
 /// Every ThermalParameters::refresh_ticks: one step of conduction, surroundings, perfusion, Joule heat
 /// (Exchange::joule), boiling (State::water, GasEvents), damage and peak temperature, with the energy budget. On other
-/// ticks returns at once. Books EnergyBudget::delivered as what Exchange::joule really put into hexels; a room that
-/// books outflow adds the same to delivered.
+/// ticks returns at once. Books as EnergyBudget::delivered what Exchange::joule really put into hexels (those burnt
+/// since the field was solved get nothing) plus its outflow.
 void conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
 /// Takes hexels whose latent budget is spent out of State::hexel_present and lists them in Exchange::removed_hexels, in

@@ -27,6 +27,7 @@ inline tissue::Model burn_model(const Int3& size = {40, 34, 22},
 /// Heat that falls off as 1/r^4 from a spot on the surface which moves along x.
 inline void heat_spot(HeatRun& run, std::int64_t tick) {
     const Int3 size = run.model.hexels.size, box(16);
+    run.exchange.joule.outflow_W = 10.0;
     const Vec3 spot(6.0 + 0.01 * static_cast<double>(tick), 0.5 * size.y, size.z - 3.0);
     run.set_joule(Int3(spot) - 8, box, [&](const Int3& c) {
         const Vec3 d = Vec3(c) - spot;

@@ -30,6 +30,7 @@ void expect_closed_budget(tissue::PhaseModel phase) {
     const tissue::EnergyBudget& e = run.state.energy_J;
     EXPECT_GT(run.state.hexels_burnt, 20);
     EXPECT_EQ(hexels - run.state.hexel_present.count(), run.state.hexels_burnt);
+    EXPECT_NEAR(e.outflow, 16.0, 1e-5) << "10 W for 1.6 s";
     EXPECT_GT(e.surface, 1e-3 * e.delivered);
     EXPECT_GT(e.perfusion, 0.0);
     EXPECT_GT(e.latent, 0.1 * e.delivered);
