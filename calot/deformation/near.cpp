@@ -67,36 +67,33 @@ struct Capsules {
     }
 };
 
-/// For each of the six directions (axis, up or down), the hexels of a phyxel whose neighbour there is absent.
-struct Openings {
-    std::array<std::uint64_t, 6> open;
-    std::uint64_t surface = 0;
-};
-
-Openings find_openings(const tissue::Model& model, const Work& work, const OccupancyShifts& shifts,
-                       std::int64_t phyxel) {
+/// The hexels of a phyxel with an absent face neighbour.
+std::uint64_t surface_hexels(const tissue::Model& model, const Work& work, const OccupancyShifts& shifts,
+                             std::int64_t phyxel) {
     auto filled = [&](std::int64_t p) {
         return work.occupancy[static_cast<std::size_t>(p)] | work.held[static_cast<std::size_t>(p)];
     };
-    const std::uint64_t own = work.occupancy[static_cast<std::size_t>(phyxel)], here = filled(phyxel);
-    Openings openings;
+    const std::uint64_t here = filled(phyxel);
+    std::uint64_t inside = work.occupancy[static_cast<std::size_t>(phyxel)];
+    const std::uint64_t own = inside;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::int64_t step = model.phyxels.stride[static_cast<int>(axis)];
-        const std::uint64_t above = shifts.down(here, axis) | shifts.low_as_high(filled(phyxel + step), axis);
-        const std::uint64_t below = shifts.up(here, axis) | shifts.high_as_low(filled(phyxel - step), axis);
-        openings.open[2 * axis] = own & ~above;
-        openings.open[2 * axis + 1] = own & ~below;
-        openings.surface |= openings.open[2 * axis] | openings.open[2 * axis + 1];
+        inside &= shifts.down(here, axis) | shifts.low_as_high(filled(phyxel + step), axis);
+        inside &= shifts.up(here, axis) | shifts.high_as_low(filled(phyxel - step), axis);
     }
-    return openings;
+    return own & ~inside;
 }
 
-/// Away from the tissue at rest: towards the absent neighbours. 0 where they balance.
-Vec3f rest_outward(const Openings& openings, int bit) {
+/// Away from the tissue at rest: against the sum of the directions to the 26 neighbours that are filled, each weighted
+/// by its inverse distance. 0 where they balance, as in a sheet one hexel thick.
+Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, std::int64_t hexel) {
     Vec3f outward(0.0f);
-    for (int axis = 0; axis < 3; ++axis)
-        outward[axis] = static_cast<float>((openings.open[static_cast<std::size_t>(2 * axis)] >> bit) & 1u) -
-                        static_cast<float>((openings.open[static_cast<std::size_t>(2 * axis + 1)] >> bit) & 1u);
+    for (const NeighbourLink& neighbour : neighbour_links()) {
+        const std::int64_t cell = hexel + model.hexels.offset(neighbour.step);
+        const Vec3f step(neighbour.step);
+        if (state.hexel_present.test(cell) || model.hexel_held.test(cell))
+            outward -= step / std::fmax(1.0f, glm::dot(step, step));
+    }
     return outward;
 }
 
@@ -104,7 +101,8 @@ Vec3f rest_outward(const Openings& openings, int bit) {
 Vec3f turn_normal(const Mat3f& F, const Vec3f& n) {
     const Vec3f turned = glm::cross(F[1], F[2]) * n.x + glm::cross(F[2], F[0]) * n.y + glm::cross(F[0], F[1]) * n.z;
     const float length = glm::length(turned);
-    return length > 0.0f ? turned / length : Vec3f(0.0f);
+    constexpr float kBalanced = 1e-3f;  // rounding of sums that cancel
+    return length > kBalanced ? turned / length : Vec3f(0.0f);
 }
 
 /// Order of the heap that keeps the nearest: furthest on top, of equals the later cell.
@@ -129,8 +127,8 @@ void keep(std::vector<tissue::NearHexel>& near, const tissue::NearHexel& item) {
 void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
                 const OccupancyShifts& shifts, const Capsules& capsules, std::int64_t phyxel, const Int3& c,
                 float reach_m) {
-    const Openings openings = find_openings(model, work, shifts, phyxel);
-    if (openings.surface == 0) return;
+    const std::uint64_t surface = surface_hexels(model, work, shifts, phyxel);
+    if (surface == 0) return;
     const Carriers carriers = find_carriers(model, state, phyxel);
     if (carriers.count == 0) return;
     CarrierFields fields;
@@ -138,7 +136,7 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
     const Vec3f centre_m(model.phyxels.centre_m(c));
     const auto half_hexel = static_cast<float>(0.5 * model.hexels.spacing_m);
     const auto margin_m = static_cast<float>(kPhyxelMargin * model.phyxels.spacing_m);
-    for (std::uint64_t rest = openings.surface; rest != 0; rest &= rest - 1) {
+    for (std::uint64_t rest = surface; rest != 0; rest &= rest - 1) {
         const int bit = __builtin_ctzll(rest);
         const float* table = work.hexel_weight.data() + kNeighbourhood * bit;
         std::array<float, kNeighbourhood> weight;
@@ -153,7 +151,7 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
         if (item.distance_m > reach_m) continue;
         item.hexel = model.hexels.index(cell);
         item.bare_gap_m = capsules.bare_distance(item.world_m) - half_hexel;
-        item.outward = turn_normal(deformation_gradient_of(f), rest_outward(openings, bit));
+        item.outward = turn_normal(deformation_gradient_of(f), rest_outward(model, state, item.hexel));
         keep(exchange.near, item);
     }
 }

@@ -12,11 +12,20 @@ namespace {
 constexpr double kMargin_m = 2e-4;
 /// Two constraints at one hexel must differ in direction by more than 60 degrees.
 constexpr float kWedgeCosine = 0.5f;
-/// Nearer to the axis than this share of the radius, the direction away from it says nothing.
-constexpr double kCoreShare = 0.25;
+/// Ways out along a capsule's axis are taken as if they led across it at this squared sine.
+constexpr double kLeastSine2 = 0.05;
 /// Points along a capsule at which an organ's distance is taken are at most this far apart; the shaft's are further.
 constexpr double kWireSample_m = 2.5e-3;
 constexpr int kMostSamples = 12;
+
+/// How far along `direction` (unit) a place `away` from the axis is from leaving a cylinder about `axis` (unit), or a
+/// sphere where `axis` is 0. Requires the place to lie inside.
+double way_out_m(const Vec3& away, const Vec3& direction, const Vec3& axis, double radius_m) {
+    const Vec3 d = direction - glm::dot(direction, axis) * axis, q = away - glm::dot(away, axis) * axis;
+    const double a = std::fmax(kLeastSine2, glm::dot(d, d)), b = glm::dot(d, q),
+                 c = glm::dot(q, q) - radius_m * radius_m;
+    return (-b + std::sqrt(std::fmax(0.0, b * b - a * c))) / a;
+}
 
 double speed(const tissue::Capsule& c) {
     return std::fmax(glm::length(c.velocity_a_m_per_s), glm::length(c.velocity_b_m_per_s));
@@ -84,21 +93,24 @@ Touch touch(const tissue::Capsule& capsule, double dt_s, const tissue::NearHexel
     // Capsules stand where they are at the end of the tick, tissue where it is at its start.
     const Vec3 a = capsule.a_m - dt_s * capsule.velocity_a_m_per_s, b = capsule.b_m - dt_s * capsule.velocity_b_m_per_s;
     const Vec3 p(hexel.world_m), ab = b - a;
-    const double length2 = glm::dot(ab, ab);
+    const double length2 = glm::dot(ab, ab), reach_m = capsule.radius_m + point_radius_m;
     const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, ab) / length2, 0.0, 1.0) : 0.0;
     const Vec3 away = p - (a + t * ab);
     const double distance_m = glm::length(away);
-    const Vec3 outward(hexel.outward);
-    const bool has_outward = glm::dot(outward, outward) > 0.0;
+    const Vec3 radial = distance_m > 0.0 ? away / distance_m : Vec3(0.0, 0.0, 1.0);
+    const Vec3 inward(-hexel.outward);
 
-    Vec3 normal = distance_m > 0.0 ? away / distance_m : Vec3(0.0, 0.0, 1.0);
-    const bool core = distance_m < kCoreShare * capsule.radius_m;
-    const bool behind = distance_m < capsule.radius_m && glm::dot(normal, outward) > 0.0;
-    if (has_outward && (core || behind)) normal = -outward;
-
+    Vec3 normal = radial;
+    double gap_m = distance_m - reach_m;
+    const bool backside = glm::dot(radial, inward) <= 0.0 && distance_m >= capsule.radius_m;
+    if (gap_m < 0.0 && inward != Vec3(0.0) && !backside) {
+        normal = inward;
+        const bool on_side = t > 0.0 && t < 1.0;
+        gap_m = -way_out_m(away, inward, on_side ? ab / std::sqrt(length2) : Vec3(0.0), reach_m);
+    }
     Touch result;
     result.normal = Vec3f(normal);
-    result.gap_m = static_cast<float>(glm::dot(away, normal) - capsule.radius_m - point_radius_m);
+    result.gap_m = static_cast<float>(gap_m);
     result.tool_velocity_m_per_s = Vec3f(glm::mix(capsule.velocity_a_m_per_s, capsule.velocity_b_m_per_s, t));
     return result;
 }

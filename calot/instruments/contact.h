@@ -6,9 +6,19 @@
 // wire cannot slip between them. The constraint is a half-space that moves with the instrument, taken at the start of
 // the tick, so that a fast wire cannot jump over a hexel within a tick: its far side is behind the half-space too.
 //
-// Sides. A thin wire has two, and the distance to its axis does not tell which one a hexel came from once the hexel's
-// centre is inside the metal. There, a hexel whose free side faces away from the axis came over it: it is pushed back
-// along its own surface normal. No memory is needed.
+// Sides. A hexel that overlaps a capsule is pushed along the tissue's own normal there, inward, until it is out:
+//
+//          away from the axis (does not work)         along the tissue's normal
+//               .---.                                    .---.
+//              (     )                                  (     )
+//            <- o   o ->   surface hexels under         | o   o |
+//              tissue      the wire slip aside          v tissue v
+//
+// Along the wire's normals, the few hexels under a tip 1 mm thick are driven apart and the wire sinks in between them
+// at 5 to 9 mm of indentation; and once a hexel's centre has come over the axis it is pushed on outwards. Along its own
+// normal it is pushed back from either side of the axis, without any memory of where it came from. Hexels whose free
+// side faces away from the wire (the far side of a thin sheet) and those of sheets one hexel thick, which have no
+// normal, go by the wire's.
 
 #include "calot/tissue/exchange.h"
 #include "calot/tissue/state.h"
