@@ -3,6 +3,9 @@
 // Phyxels first: those whose moved centre lies near a capsule. Then their surface hexels, by words: a hexel is inside
 // where all six shifted neighbours are filled. The centres of hexels sit at the same m^3 places in every cell, so
 // their kernel values are a table (Work::hexel_weight), and only which carriers live differs.
+//
+// Blending is what costs, so most is ruled out before: a blend lies within the carriers' fields, and these differ from
+// the owner's own by no more than a bound that is the same for the whole cell.
 
 #include <algorithm>
 #include <array>
@@ -49,15 +52,20 @@ struct Capsules {
             high = glm::max(high, glm::max(a, b) + margin);
         }
     }
-    /// Whether a point lies in the box, made smaller by `inset_m` on all sides.
-    bool box_holds(const Vec3f& p, float inset_m = 0.0f) const {
-        return p.x >= low.x + inset_m && p.y >= low.y + inset_m && p.z >= low.z + inset_m && p.x <= high.x - inset_m &&
-               p.y <= high.y - inset_m && p.z <= high.z - inset_m;
+    bool box_holds(const Vec3f& p) const {
+        return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
     }
-    float distance(const Vec3f& p) const {
+    float distance(const Vec3f& p, std::uint32_t which = ~0u) const {
         float nearest = 1e9f;
-        for (std::size_t k = 0; k < count; ++k) nearest = std::min(nearest, distance_to_surface(item[k], p));
+        for (std::size_t k = 0; k < count; ++k)
+            if ((which >> k) & 1u) nearest = std::min(nearest, distance_to_surface(item[k], p));
         return nearest;
+    }
+    /// Bits of the capsules within `reach_m` of a point.
+    std::uint32_t within(const Vec3f& p, float reach_m) const {
+        std::uint32_t which = 0;
+        for (std::size_t k = 0; k < count; ++k) which |= (distance_to_surface(item[k], p) <= reach_m ? 1u : 0u) << k;
+        return which;
     }
     float bare_distance(const Vec3f& p) const {
         float nearest = 1e9f;
@@ -123,6 +131,28 @@ void keep(std::vector<tissue::NearHexel>& near, const tissue::NearHexel& item) {
     std::push_heap(near.begin(), near.end(), nearer);
 }
 
+/// How far apart the displacements of any carrier and of the first can be, within `radius_m` of the phyxel's centre.
+float bound_spread(const CarrierFields& fields, int count, float radius_m) {
+    float most = 0.0f;
+    for (int n = 1; n < count; ++n) {
+        float offset2 = 0.0f, gradient2 = 0.0f;
+        for (std::size_t e = 0; e < CarrierFields::kComponents; ++e) {
+            const float d = fields.field[static_cast<std::size_t>(n)][e] - fields.field[0][e];
+            (e < 3 ? offset2 : gradient2) += d * d;
+        }
+        most = std::max(most, std::sqrt(offset2) + radius_m * std::sqrt(gradient2));
+    }
+    return most;
+}
+
+/// Half the longest diagonal of a cube of half edge `half_m` after the first carrier's deformation.
+float bound_stretch(const CarrierFields& fields, float half_m) {
+    const Mat3f F = half_m * deformation_gradient_of(fields.field[0]);
+    const Vec3f a = F[0] + F[1], b = F[0] - F[1];
+    return std::max(std::max(glm::length(a + F[2]), glm::length(a - F[2])),
+                    std::max(glm::length(b + F[2]), glm::length(b - F[2])));
+}
+
 /// Embeds the surface hexels of one phyxel and keeps those within reach.
 void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
                 const OccupancyShifts& shifts, const Capsules& capsules, std::int64_t phyxel, const Int3& c,
@@ -134,23 +164,30 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
     CarrierFields fields;
     fields.gather(model, state, work, carriers);
     const Vec3f centre_m(model.phyxels.centre_m(c));
-    const auto half_hexel = static_cast<float>(0.5 * model.hexels.spacing_m);
-    const auto margin_m = static_cast<float>(kPhyxelMargin * model.phyxels.spacing_m);
+    const auto half_hexel_m = static_cast<float>(0.5 * model.hexels.spacing_m);
+    const float half_m = half_hexel_m * static_cast<float>(shifts.m - 1);  // of the cube of the hexels' centres
+    const float spread_m = bound_spread(fields, carriers.count, std::sqrt(3.0f) * half_m);
+    const std::uint32_t which = capsules.within(centre_m + displacement_at(fields.field[0], Vec3f(0.0f)),
+                                                reach_m + spread_m + bound_stretch(fields, half_m));
+    if (which == 0) return;
+
     for (std::uint64_t rest = surface; rest != 0; rest &= rest - 1) {
         const int bit = __builtin_ctzll(rest);
+        const Int3 cell = c * shifts.m + hexel_of_bit(shifts.m, bit);
+        tissue::NearHexel item;
+        item.rest_m = Vec3f(model.hexels.centre_m(cell));
+        const Vec3f r = item.rest_m - centre_m;
+        if (capsules.distance(item.rest_m + displacement_at(fields.field[0], r), which) > reach_m + spread_m) continue;
+
         const float* table = work.hexel_weight.data() + kNeighbourhood * bit;
         std::array<float, kNeighbourhood> weight;
         for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) weight[n] = table[carriers.cell[n]];
         const auto f = blend(fields, carriers.count, weight.data());
-        const Int3 cell = c * shifts.m + hexel_of_bit(shifts.m, bit);
-        tissue::NearHexel item;
-        item.rest_m = Vec3f(model.hexels.centre_m(cell));
-        item.world_m = item.rest_m + displacement_at(f, item.rest_m - centre_m);
-        if (!capsules.box_holds(item.world_m, margin_m)) continue;  // the box reaches that much further
+        item.world_m = item.rest_m + displacement_at(f, r);
         item.distance_m = capsules.distance(item.world_m);
         if (item.distance_m > reach_m) continue;
         item.hexel = model.hexels.index(cell);
-        item.bare_gap_m = capsules.bare_distance(item.world_m) - half_hexel;
+        item.bare_gap_m = capsules.bare_distance(item.world_m) - half_hexel_m;
         item.outward = turn_normal(deformation_gradient_of(f), rest_outward(model, state, item.hexel));
         keep(exchange.near, item);
     }
