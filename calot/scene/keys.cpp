@@ -10,7 +10,7 @@ namespace calot::scene {
 
 namespace {
 
-Group top_group() {
+Group scene_group() {
     Group group{"", "", {}, {}};
     KeyTable<Scene> t(group);
     t.text(
@@ -181,7 +181,7 @@ Group script_key_group() {
     using K = ScriptKey;
     KeyTable<K> t(group);
     t.number(
-         "t_s", kSecond, 0, 3600, [](K & k) -> auto& { return k.time_s; }, "Time, later than the key before.")
+         "t", kSecond, 0, 3600, [](K & k) -> auto& { return k.time_s; }, "Time, later than the key before.")
         .required = true;
     t.text(
         "at", [](K & k) -> auto& { return k.tip.landmark; },
@@ -206,10 +206,10 @@ Group script_burst_group() {
     using B = ScriptBurst;
     KeyTable<B> t(group);
     t.number(
-         "from_s", kSecond, 0, 3600, [](B & b) -> auto& { return b.burst.from_s; }, "")
+         "from", kSecond, 0, 3600, [](B & b) -> auto& { return b.burst.from_s; }, "")
         .required = true;
     t.number(
-         "to_s", kSecond, 0, 3600, [](B & b) -> auto& { return b.burst.to_s; }, "")
+         "to", kSecond, 0, 3600, [](B & b) -> auto& { return b.burst.to_s; }, "")
         .required = true;
     t.number(
         "power_W", named("W"), 0.1, 300, [](B & b) -> auto& { return b.burst.power_W; }, "The generator's setting.");
@@ -229,7 +229,7 @@ Group script_burst_group() {
 std::vector<Group> physics_groups();  // keys_physics.cpp
 
 std::vector<Group> groups(const Scene& scene) {
-    std::vector<Group> all{top_group(), anatomy_group(), triangle_group(), block_group(), sampling_group()};
+    std::vector<Group> all{scene_group(), anatomy_group(), triangle_group(), block_group(), sampling_group()};
     for (Group& group : physics_groups()) all.push_back(std::move(group));
     all.push_back(hook_group());
     all.push_back(camera_group());

@@ -67,11 +67,11 @@ void read_file(const std::string& path, const Place& asked_by, std::vector<std::
 void read_with_bases(const std::string& text, const std::string& name, const std::string& directory,
                      std::vector<std::string> chain, Scene& scene, Problems& problems) {
     const toml::table document = parse_toml(text, name);
-    if (const toml::node* base = document.get("base")) {
+    if (const toml::node* base = document.at_path("scene.base").node()) {
         const Place place{name, static_cast<int>(base->source().begin.line),
                           static_cast<int>(base->source().begin.column)};
         if (!base->is_string())
-            problems.add(place, "'base' is no text", "give the path of a scene in quotes, relative to this one");
+            problems.add(place, "'scene.base' is no text", "give the path of a scene in quotes, relative to this one");
         else
             read_file(resolve_path(*base->value<std::string>(), directory), place, std::move(chain), scene, problems);
     }
@@ -88,7 +88,7 @@ void read_file(const std::string& path, const Place& asked_by, std::vector<std::
         for (const std::string& link : chain)
             round += (round.empty() ? "" : " -> ") + std::filesystem::path(link).filename().string();
         throw InputError(asked_by.file, asked_by.line, asked_by.column, "a scene cannot be its own base: " + round,
-                         "remove one 'base'");
+                         "remove one 'scene.base'");
     }
     if (chain.size() > 16)
         throw InputError(asked_by.file, asked_by.line, asked_by.column, "more than 16 bases on top of one another",

@@ -92,7 +92,7 @@ class DocumentReader {
         for (auto&& [key, node] : table) {
             const std::string name(key.str());
             const std::string full = join_path(path, name);
-            if (full == "base") continue;  // done already: see load.cpp
+            if (full == "scene.base") continue;  // done already: see load.cpp
             if (full == "materials") {
                 if (const toml::table* materials = expect_table(node, full)) read_materials(*materials);
             } else if (const Group* group = find_group(full)) {

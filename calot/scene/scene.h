@@ -50,7 +50,7 @@ struct MeshEntry {
     std::string material = "fat";
     std::string role =
         "tissue";  ///< "tissue", "organ" (rigid, holds the tissue it meets), "obstacle" (rigid, holds nothing)
-    std::string unit = "mm";
+    double unit_m = 1e-3;  ///< length of a unit of the file
     Vec3 rotation_rad{0.0};  ///< about x, then y, then z
     Vec3 translation_m{0.0};
     std::string content;  ///< hash of the file's bytes, hexadecimal; empty: not compared

@@ -114,13 +114,12 @@ std::string text(const Scene& scene) {
 
 std::string defaults_text() {
     Scene scene;
-    std::string out = comment(
-        "Every key of a scene with its default. Leave out what you do not change.\n"
-        "base = \"other.toml\" at the top starts from another scene instead of the defaults.");
+    std::string out = comment("Every key of a scene with its default. Leave out what you do not change.") + "\n";
     MeshEntry example;
     example.file = "organ.stl";
-    for (const Group& group : groups(scene)) {
-        if (!group.path.empty()) out += "\n";
+    const std::vector<Group> all = groups(scene);
+    for (const Group& group : all) {
+        if (&group != &all.front()) out += "\n";
         out += comment(group.documentation);
         const bool absent = group.records && group.records->size(scene) == 0;
         const std::string in_front = absent ? "# " : "";

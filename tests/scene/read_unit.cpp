@@ -33,7 +33,7 @@ TEST(Read, ConvertsUnits) {
     const Scene scene = read(
         "[sampling]\nhexel_spacing_mm = 0.6\n[thermal]\nbody_temperature_C = 37\n"
         "[materials.fat]\nyoungs_modulus_kPa = 5\nperfusion_ml_per_min_kg = 60\n"
-        "[[script.key]]\nt_s = 0\nroll_deg = 180\noffset_mm = [1, 2, 3]\n");
+        "[[script.key]]\nt = 0\nroll_deg = 180\noffset_mm = [1, 2, 3]\n");
     EXPECT_DOUBLE_EQ(scene.sampling.hexel_spacing_m, 0.6e-3);
     EXPECT_DOUBLE_EQ(scene.thermal.body_temperature_K, 310.15);
     EXPECT_DOUBLE_EQ(scene.materials[1].youngs_modulus_Pa, 5e3);
@@ -62,7 +62,7 @@ TEST(Read, PrintedDefaultsAreTheDefaultScene) {
         for (const Key& key : group.keys)
             EXPECT_NE(printed.find("\n" + key.name + " = "), printed.find("\n# " + key.name + " = ")) << key.name;
     for (const char* key :
-         {"hexel_spacing_mm = 0.6", "body_temperature_C = 37", "# file = ", "# from_s = ", "[materials.liver]"})
+         {"hexel_spacing_mm = 0.6", "body_temperature_C = 37", "# file = ", "# from = ", "[materials.liver]"})
         EXPECT_NE(printed.find(key), std::string::npos) << key;
 }
 
@@ -74,8 +74,8 @@ TEST(Read, CanonicalTextBuildsTheSameSceneToTheLastBit) {
              "[thermal]\nbody_temperature_C = 36.7\ngas_temperature_C = 0.1\n"
              "[materials.zz_tumour]\nlike = \"fat\"\nyoungs_modulus_kPa = 11.3\nperfusion_ml_per_min_kg = 17.7\n"
              "[materials.another]\nlike = \"zz_tumour\"\npoisson_ratio = 0.33\n"
-             "[[script.key]]\nt_s = 0.1\nroll_deg = 33.3\noffset_mm = [0.1, 0.2, 30.3]\n"
-             "[[script.burst]]\nfrom_s = 0.3\nto_s = 0.7\npower_W = 12.34\nmode = \"coag\"\n");
+             "[[script.key]]\nt = 0.1\nroll_deg = 33.3\noffset_mm = [0.1, 0.2, 30.3]\n"
+             "[[script.burst]]\nfrom = 0.3\nto = 0.7\npower_W = 12.34\nmode = \"coag\"\n");
     const std::string first = text(scene);
     const Scene again = read(first);
     EXPECT_EQ(text(again), first);
@@ -104,7 +104,7 @@ TEST(Read, TellsEveryMistakeWithItsLine) {
 }
 
 TEST(Read, ListsThePatientsLandmarks) {
-    const std::string told = complaint(std::string(kBlock) + "[[script.key]]\nt_s = 0\nat = \"topp\"\n");
+    const std::string told = complaint(std::string(kBlock) + "[[script.key]]\nt = 0\nat = \"topp\"\n");
     EXPECT_NE(told.find("unknown landmark \"topp\""), std::string::npos) << told;
     EXPECT_NE(told.find("did you mean \"top\"? this anatomy has centre, top, trocar"), std::string::npos) << told;
 }
@@ -132,7 +132,7 @@ TEST(Override, SetsAndValidates) {
     EXPECT_EQ(scene.deformation.law, tissue::ElasticLaw::saint_venant_kirchhoff);
     EXPECT_EQ(scene.name, "a plain = sign");
     EXPECT_EQ(scene.materials[1].youngs_modulus_Pa, 7e3);
-    for (const char* wrong : {"nothing", "=3", "deformation.damping=60", "script.key[4].t_s=1", "script.key.t_s=1",
+    for (const char* wrong : {"nothing", "=3", "deformation.damping=60", "script.key[4].t=1", "script.key.t=1",
                               "run[0].duration_s=1", "run.duration_s=long", "run.duration_s=", "run.duration_s=-1",
                               "run.duration_s=1\nrun.duration_s=2", "block.size_mm=[1,2]"})
         EXPECT_THROW(override_value(scene, wrong), InputError) << wrong;
@@ -146,7 +146,7 @@ TEST(Override, SetsAndValidates) {
 
 class Files : public ::testing::Test {
   protected:
-    Files() : folder_(std::filesystem::temp_directory_path() / ("calot_scene_test." + std::to_string(::getpid()))) {
+    Files() : folder_(std::filesystem::temp_directory_path() / ("calotcene_test." + std::totring(::getpid()))) {
         std::filesystem::create_directories(folder_);
     }
     ~Files() override { std::filesystem::remove_all(folder_); }
@@ -158,7 +158,7 @@ class Files : public ::testing::Test {
 };
 
 TEST_F(Files, StartsFromABase) {
-    write("base.toml", std::string(kBlock) + "name = \"base\"\n[run]\nduration_s = 4\n[[script.key]]\nt_s = 1\n");
+    write("base.toml", std::string(kBlock) + "name = \"base\"\n[run]\nduration_s = 4\n[[script.key]]\nt = 1\n");
     const Scene scene = load(write("top.toml", "base = \"base.toml\"\nname = \"top\"\n"));
     EXPECT_EQ(scene.name, "top");
     EXPECT_EQ(scene.duration_s, 4.0);

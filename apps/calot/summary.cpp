@@ -1,0 +1,67 @@
+#include "summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace calot::app {
+
+std::string summary_json(const RunRecord& r) {
+    using Json = nlohmann::ordered_json;
+    Json j;
+    j["scene"] = r.scene;
+    j["version"] = CALOT_VERSION;
+    j["seed"] = r.seed;
+    j["duration_s"] = r.duration_s;
+    j["ticks"] = r.ticks;
+    j["threads"] = r.threads;
+    j["interrupted"] = r.interrupted;
+    j["status"] = r.status.ok ? Json("ok")
+                              : Json{{"field", r.status.field}, {"cell", r.status.cell}, {"tick", r.status.tick}};
+    j["phyxels_initial"] = r.phyxels_initial;
+    j["phyxels_removed"] = r.phyxels_removed;
+    j["hexels_initial"] = r.hexels_initial;
+    j["hexels_removed"] = r.last.hexels_burnt + r.last.hexels_fallen;
+    j["hexels_burnt"] = r.last.hexels_burnt;
+    j["hexels_fallen"] = r.last.hexels_fallen;
+    j["links_severed"] = r.last.links_severed;
+    j["volume_removed_m3"] = r.last.volume_removed_m3;
+    j["max_temperature_K"] = r.max_temperature_K;
+    const tissue::EnergyBudget& e = r.last.energy_J;
+    // `latent` is the latent part of `gas`; the others add up to `delivered`.
+    j["energy_J"] = {{"delivered", e.delivered}, {"stored", r.last.stored_J}, {"latent", e.latent},   {"gas", e.gas},
+                     {"surface", e.surface},     {"perfusion", e.perfusion},  {"outflow", e.outflow}, {"debris", e.debris}};
+    j["energy_imbalance"] = r.energy_imbalance;
+    // Means are over the ticks in contact.
+    j["force_N"] = {{"max", r.force_N.max()},
+                    {"mean", r.force_N.count() > 0 ? r.force_N.sum() / static_cast<double>(r.force_N.count()) : 0.0}};
+    j["surface"] = {{"vertices", r.surface_vertices},
+                    {"triangles", r.surface_triangles},
+                    {"closed", r.surface_closed},
+                    {"volume_m3", r.surface_volume_m3}};
+    Json injuries = Json::array();
+    for (const Injury& injury : r.injuries)
+        injuries.push_back({{"structure", injury.structure},
+                            {"hexels_removed", injury.hexels_removed},
+                            {"hexels_damaged", injury.hexels_damaged},
+                            {"volume_m3", injury.volume_m3},
+                            {"max_temperature_K", injury.max_temperature_K},
+                            {"first_time_s", injury.first_time_s}});
+    j["injuries"] = injuries;
+    j["state_hash"] = fmt::format("{:016x}", r.state_hash);
+    j["wall_s"] = r.wall_s;
+    // Simulated time over the wall time of the ticks: pictures and files not counted.
+    j["realtime_factor"] = r.wall_ticks_s > 0.0 ? r.duration_s / r.wall_ticks_s : 0.0;
+    j["tick_us"] = {{"median", r.tick_us.at(0.5)}, {"p99", r.tick_us.at(0.99)}, {"max", r.tick_us.max()}};
+    Json stages;
+    for (int k = 0; k < simulation::kStages; ++k) stages[simulation::kStageNames[k]] = r.stages_us[k].at(0.5);
+    j["stages_us"] = stages;
+    j["video"] = r.video;
+    Json stills = Json::array();
+    for (const Still& still : r.stills) stills.push_back(still.file);
+    j["stills"] = stills;
+    j["renderer"] = r.renderer;
+    j["notes"] = r.notes;
+    return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace calot::app
