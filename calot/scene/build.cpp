@@ -77,9 +77,15 @@ anatomy::Anatomy build_anatomy(const Scene& scene) {
     switch (scene.kind) {
         case AnatomyKind::block:
             return anatomy::make_block(scene.block);
-        default:
-            throw InputError(scene.file, 0, 0, "this anatomy cannot be built");
+        case AnatomyKind::calots_triangle: {
+            anatomy::TriangleParameters parameters = scene.triangle;
+            parameters.seed = scene.seed;
+            return anatomy::make_calots_triangle(parameters);
+        }
+        case AnatomyKind::meshes:
+            break;
     }
+    throw InputError(scene.file, 0, 0, "meshes cannot be built yet");
 }
 
 simulation::Setup build(const Scene& scene) {

@@ -110,6 +110,16 @@ class KeyTable {
         key.set = [=](void* r, const Value& v) { field(record(r)) = unit.to_si(std::get<double>(v)); };
         return key;
     }
+    template <class F>
+    Key& drawn_boolean(const char* name, F field, const char* documentation) {
+        Key& key = add(name, KeyType::boolean, documentation);
+        key.get = [=](const void* r) {
+            const std::optional<bool>& value = field(record(r));
+            return value ? std::optional<Value>(*value) : std::nullopt;
+        };
+        key.set = [=](void* r, const Value& v) { field(record(r)) = std::get<bool>(v); };
+        return key;
+    }
 
   private:
     static R& record(const void* r) { return *static_cast<R*>(const_cast<void*>(r)); }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calot/anatomy/block.h"
+#include "calot/anatomy/calots_triangle.h"
 #include "calot/effects/smoke.h"
 #include "calot/instruments/hook.h"
 #include "calot/simulation/setup.h"
@@ -49,7 +50,7 @@ struct MeshEntry {
     std::string file;  ///< as written: relative to the scene file
     std::string material = "fat";
     std::string role =
-        "tissue";  ///< "tissue", "organ" (rigid, holds the tissue it meets), "obstacle" (rigid, holds nothing)
+        "tissue";          ///< "tissue", "organ" (rigid, holds the tissue it meets), "obstacle" (rigid, holds nothing)
     double unit_m = 1e-3;  ///< length of a unit of the file
     Vec3 rotation_rad{0.0};  ///< about x, then y, then z
     Vec3 translation_m{0.0};
@@ -73,7 +74,8 @@ struct Scene {
     std::string description;
 
     AnatomyKind kind = AnatomyKind::calots_triangle;
-    std::uint64_t seed = 1;  ///< of the patient
+    std::uint64_t seed = 1;                ///< of the patient
+    anatomy::TriangleParameters triangle;  ///< its seed is the one above
     anatomy::BlockParameters block;
     std::vector<MeshEntry> meshes;
 

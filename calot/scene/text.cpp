@@ -85,7 +85,8 @@ void append_documented(std::string& out, const Key& key, const void* record, con
     if (value)
         out += fmt::format("{}{} = {}\n", in_front, key.name, toml_text(*value));
     else
-        out += fmt::format("# {} = {:g}\n", key.name, 0.5 * (key.low + key.high));
+        out += fmt::format("# {} = {}\n", key.name,
+                           key.type == KeyType::boolean ? "false" : fmt::format("{:g}", 0.5 * (key.low + key.high)));
 }
 
 }  // namespace

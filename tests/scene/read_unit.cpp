@@ -69,7 +69,7 @@ TEST(Read, PrintedDefaultsAreTheDefaultScene) {
 TEST(Read, CanonicalTextBuildsTheSameSceneToTheLastBit) {
     Scene scene =
         read(std::string(kBlock) +
-             "name = \"quotes \\\" and \\\\ and \\t\"\n"
+             "scene.name = \"quotes \\\" and \\\\ and \\t\"\n"
              "[block]\nsize_mm = [7.1, 8.3, 2.7000000000000006]\n"
              "[thermal]\nbody_temperature_C = 36.7\ngas_temperature_C = 0.1\n"
              "[materials.zz_tumour]\nlike = \"fat\"\nyoungs_modulus_kPa = 11.3\nperfusion_ml_per_min_kg = 17.7\n"
@@ -125,7 +125,7 @@ TEST(Override, SetsAndValidates) {
     override_value(scene, "deformation.damping_per_s=60");
     override_value(scene, "script.key[0].offset_mm=[1, 2, 3]");
     override_value(scene, "deformation.law=saint_venant_kirchhoff");
-    override_value(scene, "name=a plain = sign");
+    override_value(scene, "scene.name=a plain = sign");
     override_value(scene, "materials.fat.youngs_modulus_kPa=7");
     EXPECT_EQ(scene.deformation.damping_per_s, 60.0);
     EXPECT_DOUBLE_EQ(scene.script[0].tip.offset_m.y, 2e-3);
@@ -146,7 +146,7 @@ TEST(Override, SetsAndValidates) {
 
 class Files : public ::testing::Test {
   protected:
-    Files() : folder_(std::filesystem::temp_directory_path() / ("calotcene_test." + std::totring(::getpid()))) {
+    Files() : folder_(std::filesystem::temp_directory_path() / ("calotcene_test." + std::to_string(::getpid()))) {
         std::filesystem::create_directories(folder_);
     }
     ~Files() override { std::filesystem::remove_all(folder_); }
@@ -158,8 +158,8 @@ class Files : public ::testing::Test {
 };
 
 TEST_F(Files, StartsFromABase) {
-    write("base.toml", std::string(kBlock) + "name = \"base\"\n[run]\nduration_s = 4\n[[script.key]]\nt = 1\n");
-    const Scene scene = load(write("top.toml", "base = \"base.toml\"\nname = \"top\"\n"));
+    write("base.toml", std::string(kBlock) + "scene.name = \"base\"\n[run]\nduration_s = 4\n[[script.key]]\nt = 1\n");
+    const Scene scene = load(write("top.toml", "scene.base = \"base.toml\"\nscene.name = \"top\"\n"));
     EXPECT_EQ(scene.name, "top");
     EXPECT_EQ(scene.duration_s, 4.0);
     EXPECT_EQ(scene.script.at(0).time_s, 1.0);
@@ -168,7 +168,7 @@ TEST_F(Files, StartsFromABase) {
 TEST_F(Files, PointsIntoTheBase) {
     write("base.toml", "\n[run]\nduration_s = true\n");
     try {
-        load(write("top.toml", "base = \"base.toml\"\n"));
+        load(write("top.toml", "scene.base = \"base.toml\"\n"));
         FAIL();
     } catch (const InputError& error) {
         EXPECT_NE(error.describe().find("base.toml:3:14: 'run.duration_s' is true or false"), std::string::npos)
@@ -177,9 +177,9 @@ TEST_F(Files, PointsIntoTheBase) {
 }
 
 TEST_F(Files, RefusesACircleOfBases) {
-    write("b.toml", "base = \"a.toml\"\n");
+    write("b.toml", "scene.base = \"a.toml\"\n");
     try {
-        load(write("a.toml", "base = \"b.toml\"\n"));
+        load(write("a.toml", "scene.base = \"b.toml\"\n"));
         FAIL();
     } catch (const InputError& error) {
         EXPECT_NE(error.describe().find("its own base: a.toml -> b.toml -> a.toml"), std::string::npos)
