@@ -51,9 +51,12 @@ bool Frames::still_due(double time_s) const {
     return next_still_ < settings_.picture.stills && time_s >= still_time_s(next_still_) - kHalfTick_s;
 }
 bool Frames::frame_due(double time_s) const {
-    return want_video_ && time_s >= static_cast<double>(next_frame_) / settings_.picture.frames_per_second - kHalfTick_s;
+    return want_video_ &&
+           time_s >= static_cast<double>(next_frame_) / settings_.picture.frames_per_second - kHalfTick_s;
 }
-bool Frames::due(double time_s) const { return thread_.joinable() && (still_due(time_s) || frame_due(time_s)); }
+bool Frames::due(double time_s) const {
+    return thread_.joinable() && (still_due(time_s) || frame_due(time_s));
+}
 
 std::unique_ptr<render::View> Frames::take() {
     std::unique_lock lock(mutex_);

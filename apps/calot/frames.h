@@ -30,7 +30,8 @@ struct FrameSettings {
 
 class Frames {
   public:
-    /// Starts the drawing thread. Trouble with OpenGL or ffmpeg is no error: it ends in notes(), and pictures are missing.
+    /// Starts the drawing thread. Trouble with OpenGL or ffmpeg is no error: it ends in notes(), and pictures are
+    /// missing.
     explicit Frames(const FrameSettings& settings);
     ~Frames();
 

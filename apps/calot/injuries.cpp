@@ -4,14 +4,16 @@
 
 namespace calot::app {
 
-InjuryWatch::InjuryWatch(const tissue::Model& model, const tissue::State& state) : by_material_(model.materials.size()) {
+InjuryWatch::InjuryWatch(const tissue::Model& model, const tissue::State& state)
+    : by_material_(model.materials.size()) {
     for (std::size_t k = 0; k < by_material_.size(); ++k) {
         by_material_[k].structure = model.materials[k].name;
         by_material_[k].first_time_s = -1.0;
     }
     const tissue::MaterialIndex fat = tissue::find_material(model.materials, "fat");
     for (std::int64_t h = model.hexels.first; h < model.hexels.last; ++h)
-        if (state.hexel_present.test(h) && model.hexel_material[static_cast<std::size_t>(h)] != fat) hexels_.push_back(h);
+        if (state.hexel_present.test(h) && model.hexel_material[static_cast<std::size_t>(h)] != fat)
+            hexels_.push_back(h);
 }
 
 void InjuryWatch::look(const tissue::Model& model, const tissue::State& state, double time_s) {
@@ -19,7 +21,8 @@ void InjuryWatch::look(const tissue::Model& model, const tissue::State& state, d
     for (std::int64_t h : hexels_) {
         const auto cell = static_cast<std::size_t>(h);
         Injury& injury = by_material_[model.hexel_material[cell]];
-        injury.max_temperature_K = std::max(injury.max_temperature_K, static_cast<double>(state.peak_temperature_K[cell]));
+        injury.max_temperature_K =
+            std::max(injury.max_temperature_K, static_cast<double>(state.peak_temperature_K[cell]));
         if (!state.hexel_present.test(h))
             ++injury.hexels_removed;
         else if (state.damage[cell] >= 1.0f)

@@ -6,7 +6,9 @@ namespace calot::app {
 
 namespace {
 volatile std::sig_atomic_t stop_asked = 0;
-void ask_to_stop(int) { stop_asked = 1; }
+void ask_to_stop(int) {
+    stop_asked = 1;
+}
 }  // namespace
 
 void catch_interrupts() {
@@ -18,6 +20,8 @@ void catch_interrupts() {
     std::signal(SIGPIPE, SIG_IGN);
 }
 
-bool interrupted() { return stop_asked != 0; }
+bool interrupted() {
+    return stop_asked != 0;
+}
 
 }  // namespace calot::app

@@ -15,7 +15,12 @@ namespace {
 
 constexpr const char* kExamples = R"(
 Examples:
+  calot simulate scenes/calot.toml                      dissect the standard patient into out/calot/
+  calot simulate scenes/calot.toml --seed 7 --out p7    another patient
+  calot simulate scenes/block.toml --duration 1 --frames none
+  calot simulate scenes/block.toml --set electric.voltage_limit_V=200 --set materials.fat.youngs_modulus_kPa=8
   calot inspect scenes/calot.toml                       what the scene is made of
+  calot replay out/calot/recording.calot --verify       run it again and compare bit for bit
   calot scene --defaults                                every key that a scene may have
 
 Exit codes: 0 done, 2 bad input or usage, 130 interrupted, 1 anything else.)";
@@ -33,17 +38,59 @@ void add_scene_options(CLI::App& command, SceneChoice& choice) {
         ->allow_extra_args(false);
 }
 
+void add_output_options(CLI::App& command, OutputChoice& output) {
+    command.add_option("--out", output.directory, "Where to write")->type_name("DIR");
+    command.add_option("--frames", output.frames, "Pictures: none, png (stills), video (stills and an MP4)")
+        ->type_name("KIND")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, FrameKind>{
+            {"none", FrameKind::none}, {"png", FrameKind::png}, {"video", FrameKind::video}}));
+    command.add_option("--export-every", output.export_every_s, "Write the surface (VTK) so often; 0: never")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.0, 3600.0));
+    command.add_option("--progress", output.progress, "auto (a bar on a terminal, lines otherwise), plain or none")
+        ->type_name("KIND")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, ProgressKind>{
+            {"auto", ProgressKind::automatic}, {"plain", ProgressKind::plain}, {"none", ProgressKind::none}}));
+    command
+        .add_option("--threads", output.threads, "Threads to compute with; 0: all cores. Results do not depend on it")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1024));
+    command.add_flag("--force", output.force,
+                     "Replace the output directory if it exists, once the new one is complete");
+}
+
 int run(int argc, char** argv) {
     CLI::App app("Calot simulates electrosurgery on soft tissue in real time.", "calot");
     app.footer(kExamples);
     app.require_subcommand(1);
     int code = kDone;
 
+    SimulateOptions simulate_options;
+    CLI::App* simulate_command = app.add_subcommand("simulate", "Run a scene and write what happened");
+    add_scene_options(*simulate_command, simulate_options.scene);
+    add_output_options(*simulate_command, simulate_options.output);
+    simulate_command->footer(
+        "\nWithout --out it writes to out/NAME, NAME being that of the scene file: summary.json, timeline.csv, "
+        "report.html,\n"
+        "recording.calot, surface/*.vtp with surface.pvd (ParaView), frames/*.png, dissection.mp4.");
+    simulate_command->callback([&] { code = simulate(simulate_options); });
+
     InspectOptions inspect_options;
     CLI::App* inspect_command = app.add_subcommand("inspect", "Say what a scene is made of, without running it");
     add_scene_options(*inspect_command, inspect_options.scene);
     inspect_command->add_flag("--json", inspect_options.json, "As JSON");
     inspect_command->callback([&] { code = inspect(inspect_options); });
+
+    ReplayOptions replay_options;
+    CLI::App* replay_command = app.add_subcommand("replay", "Run a recording again");
+    replay_command->add_option("recording", replay_options.recording, "recording.calot of a run")
+        ->required()
+        ->type_name("RECORDING");
+    replay_command->add_flag("--verify", replay_options.verify,
+                             "Compare the state with the recording every second; exit code 1 at the first difference");
+    add_output_options(*replay_command, replay_options.output);
+    replay_command->footer("\nWithout --out nothing is written.");
+    replay_command->callback([&] { code = replay(replay_options); });
 
     bool defaults = false;
     CLI::App* scene_command = app.add_subcommand("scene", "About scene files");

@@ -29,14 +29,16 @@ OutputDirectory::OutputDirectory(const std::string& directory, bool force) : for
     fs::path path = fs::absolute(directory).lexically_normal();
     if (!path.has_filename()) path = path.parent_path();
     if (directory.empty() || !path.has_filename())
-        throw InputError(fmt::format("'{}' cannot be an output directory", directory), "give the name of a directory to create");
+        throw InputError(fmt::format("'{}' cannot be an output directory", directory),
+                         "give the name of a directory to create");
     final_ = path;
     refuse_if_taken();
     std::error_code error;
     fs::create_directories(final_.parent_path(), error);
     if (error)
-        throw InputError(fmt::format("cannot create the directory {}: {}", final_.parent_path().string(), error.message()),
-                         "choose another with --out");
+        throw InputError(
+            fmt::format("cannot create the directory {}: {}", final_.parent_path().string(), error.message()),
+            "choose another with --out");
     for (int attempt = 0;; ++attempt) {
         partial_ = final_;
         partial_ += fmt::format(".partial-{}{}", ::getpid(), attempt > 0 ? fmt::format("-{}", attempt) : "");
@@ -62,7 +64,8 @@ void OutputDirectory::refuse_if_taken() const {
         throw InputError(fmt::format("{} exists", final_.string()),
                          "--force replaces it once the new one is complete; or choose another with --out");
     if (!is_earlier_output(final_))
-        throw InputError(fmt::format("{} is not an output of Calot (it has no summary.json); it will not be replaced", final_.string()),
+        throw InputError(fmt::format("{} is not an output of Calot (it has no summary.json); it will not be replaced",
+                                     final_.string()),
                          "choose another with --out, or remove it yourself");
 }
 
@@ -87,7 +90,8 @@ void OutputDirectory::commit() {
 
 void write_file(const std::string& path, const std::string& content) {
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"), std::fclose);
-    if (!file || std::fwrite(content.data(), 1, content.size(), file.get()) != content.size() || std::fflush(file.get()) != 0)
+    if (!file || std::fwrite(content.data(), 1, content.size(), file.get()) != content.size() ||
+        std::fflush(file.get()) != 0)
         throw std::system_error(errno, std::generic_category(), "cannot write " + path);
 }
 

@@ -8,8 +8,8 @@ namespace calot::app {
 
 class OutputDirectory {
   public:
-    /// Creates "DIR.partial-N" beside `directory`. Throws InputError when `directory` exists (with `force`: when it is not
-    /// an earlier output of Calot), or nothing can be written there.
+    /// Creates "DIR.partial-N" beside `directory`. Throws InputError when `directory` exists (with `force`: when it is
+    /// not an earlier output of Calot), or nothing can be written there.
     OutputDirectory(const std::string& directory, bool force);
     /// Without commit(): removes the temporary directory if nothing was written into it, and keeps it otherwise.
     ~OutputDirectory();

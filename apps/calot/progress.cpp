@@ -30,7 +30,8 @@ void Progress::update(double time_s) {
     const int percent = static_cast<int>(100.0 * share);
     if (percent < next_percent_) return;
     next_percent_ = percent - percent % 10 + 10;
-    fmt::print(stderr, "calot: {:3d} %  {:.2f} of {:g} s simulated, about {} left\n", percent, time_s, duration_s_, duration_text(left_s));
+    fmt::print(stderr, "calot: {:3d} %  {:.2f} of {:g} s simulated, about {} left\n", percent, time_s, duration_s_,
+               duration_text(left_s));
     std::fflush(stderr);
 }
 
@@ -40,7 +41,8 @@ void Progress::draw_bar(double time_s, double left_s) {
     const int filled = static_cast<int>(std::floor(share * kWidth));
     std::string bar;
     for (int k = 0; k < kWidth; ++k) bar += k < filled ? "█" : "░";
-    fmt::print(stderr, "\r  {} {:3.0f} %  {:6.2f} / {:g} s  {} left   ", bar, 100.0 * share, time_s, duration_s_, duration_text(left_s));
+    fmt::print(stderr, "\r  {} {:3.0f} %  {:6.2f} / {:g} s  {} left   ", bar, 100.0 * share, time_s, duration_s_,
+               duration_text(left_s));
     std::fflush(stderr);
     bar_drawn_ = true;
 }

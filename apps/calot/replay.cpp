@@ -26,7 +26,8 @@ class Verifier {
                              "verify it with that version; without --verify it can be replayed");
         for (const simulation::HashRecord& record : recording.hashes) by_tick_[record.tick] = &record;
         if (by_tick_.empty())
-            throw InputError(path, 0, 0, "the recording holds no hashes to compare with", "record at least a second, or to the end");
+            throw InputError(path, 0, 0, "the recording holds no hashes to compare with",
+                             "record at least a second, or to the end");
     }
 
     /// False at the first difference.
@@ -58,9 +59,11 @@ class Verifier {
 int replay(const ReplayOptions& options) {
     const simulation::Recording recording = simulation::read_recording(options.recording);
     if (recording.inputs.empty())
-        throw InputError(options.recording, 0, 0, "the recording holds no inputs", "it was cut off within its first second");
+        throw InputError(options.recording, 0, 0, "the recording holds no inputs",
+                         "it was cut off within its first second");
     if (!recording.complete)
-        fmt::print(stderr, "calot: note: the recording was cut off; it is replayed up to tick {}\n", recording.inputs.size());
+        fmt::print(stderr, "calot: note: the recording was cut off; it is replayed up to tick {}\n",
+                   recording.inputs.size());
 
     RunPlan plan;
     plan.scene = scene::parse(recording.scene_text, options.recording + " (its scene)", ".");
@@ -80,7 +83,8 @@ int replay(const ReplayOptions& options) {
         return kFailed;
     }
     if (verifier && !record.interrupted)
-        fmt::print("verified: the state is the same at all {} moments compared, to the last bit\n", verifier->compared());
+        fmt::print("verified: the state is the same at all {} moments compared, to the last bit\n",
+                   verifier->compared());
     return record.exit_code();
 }
 

@@ -23,10 +23,12 @@ namespace calot::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
-constexpr std::int64_t kTicksPerRow = 10;      ///< of the timeline
-constexpr std::int64_t kTicksPerLook = 100;    ///< at injuries
+constexpr std::int64_t kTicksPerRow = 10;    ///< of the timeline
+constexpr std::int64_t kTicksPerLook = 100;  ///< at injuries
 constexpr std::int64_t kTicksPerFlush = 1000;
 
 /// Everything that writes while the run goes on.
@@ -37,7 +39,7 @@ class Outputs {
           recording_(directory_.path("recording.calot"), CALOT_VERSION, run.setup().scene_text, run.state()),
           series_(directory_.partial().string(), plan.output.export_every_s),
           frames_({plan.output.frames, plan.scene.picture, duration_s, directory_.partial().string()}) {
-        if (plan.output.frames != FrameKind::none) picture_.emplace(plan.scene, run);
+        if (plan.output.frames != FrameKind::none) picture_.emplace(run.setup());
     }
 
     /// Surfaces and pictures that are due now.
@@ -66,7 +68,9 @@ class Outputs {
     OutputDirectory& directory() { return directory_; }
 
   private:
-    bool plan_end_missing(const simulation::Simulation& run) const { return series_.last_time_s() < run.time_s() - 0.5e-3; }
+    bool plan_end_missing(const simulation::Simulation& run) const {
+        return series_.last_time_s() < run.time_s() - 0.5e-3;
+    }
 
     OutputDirectory directory_;
     simulation::RecordingWriter recording_;
@@ -88,7 +92,8 @@ void describe_end(const simulation::Simulation& run, RunRecord& record) {
     record.surface_closed = surface::check(mesh).closed;
     record.surface_volume_m3 = surface::volume_m3(mesh);
     record.state_hash = tissue::hash(state);
-    for (float peak : state.peak_temperature_K) record.max_temperature_K = std::max(record.max_temperature_K, static_cast<double>(peak));
+    for (float peak : state.peak_temperature_K)
+        record.max_temperature_K = std::max(record.max_temperature_K, static_cast<double>(peak));
 }
 
 }  // namespace
@@ -102,7 +107,8 @@ RunRecord perform(const RunPlan& plan) {
     catch_interrupts();
     const auto start = Clock::now();
     RunRecord record;
-    record.threads = plan.output.threads > 0 ? plan.output.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    record.threads = plan.output.threads > 0 ? plan.output.threads
+                                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     const ThreadLimit limit(record.threads);
     record.scene = plan.setup->name;
     record.seed = plan.setup->seed;
@@ -127,7 +133,8 @@ RunRecord perform(const RunPlan& plan) {
             const double tick_s = seconds_since(before);
             record.tick_us.add(tick_s * 1e6);
             record.wall_ticks_s += tick_s;
-            for (std::size_t k = 0; k < record.stages_us.size(); ++k) record.stages_us[k].add(static_cast<double>(run.work().stage_us[k]));
+            for (std::size_t k = 0; k < record.stages_us.size(); ++k)
+                record.stages_us[k].add(static_cast<double>(run.work().stage_us[k]));
             const double force_N = glm::length(run.state().hook_force_N);
             if (force_N > 0.0) record.force_N.add(force_N);
             if (outputs) outputs->record(input, run.state());
@@ -152,11 +159,13 @@ RunRecord perform(const RunPlan& plan) {
             record.wall_s = seconds_since(start);
             record.directory = plan.output.directory;
             write_file(outputs->directory().path("summary.json"), summary_json(record));
-            write_file(outputs->directory().path("report.html"), report_html(record, plan, outputs->directory().partial().string()));
+            write_file(outputs->directory().path("report.html"),
+                       report_html(record, plan, outputs->directory().partial().string()));
             outputs->directory().commit();
         }
     } catch (const std::exception&) {
-        if (outputs) fmt::print(stderr, "calot: what was written so far is in {}\n", outputs->directory().partial().string());
+        if (outputs)
+            fmt::print(stderr, "calot: what was written so far is in {}\n", outputs->directory().partial().string());
         throw;
     }
     record.wall_s = seconds_since(start);
@@ -165,18 +174,21 @@ RunRecord perform(const RunPlan& plan) {
 
 void print_outcome(const RunRecord& record) {
     if (!record.status.ok)
-        fmt::print(stderr, "calot: the simulation stopped at tick {}: {} is not finite at cell {}\n", record.status.tick, record.status.field,
-                   record.status.cell);
-    if (record.interrupted) fmt::print(stderr, "calot: interrupted after {:.2f} s of simulated time\n", record.duration_s);
+        fmt::print(stderr, "calot: the simulation stopped at tick {}: {} is not finite at cell {}\n",
+                   record.status.tick, record.status.field, record.status.cell);
+    if (record.interrupted)
+        fmt::print(stderr, "calot: interrupted after {:.2f} s of simulated time\n", record.duration_s);
     for (const std::string& note : record.notes) fmt::print(stderr, "calot: note: {}\n", note);
-    fmt::print("{:.2f} s simulated in {:.1f} s (a tick of 1 ms took {:.3f} ms at the median, {:.3f} ms at 99 %)\n", record.duration_s,
-               record.wall_s, record.tick_us.at(0.5) * 1e-3, record.tick_us.at(0.99) * 1e-3);
-    fmt::print("removed {} of {} hexels ({:.3f} ml), hottest {:.0f} C, force at most {:.2f} N, energy imbalance {:.1e}\n",
-               record.last.hexels_burnt + record.last.hexels_fallen, record.hexels_initial, record.last.volume_removed_m3 * 1e6,
-               celsius_from_kelvin(record.max_temperature_K), record.force_N.max(), record.energy_imbalance);
+    fmt::print("{:.2f} s simulated in {:.1f} s (a tick of 1 ms took {:.3f} ms at the median, {:.3f} ms at 99 %)\n",
+               record.duration_s, record.wall_s, record.tick_us.at(0.5) * 1e-3, record.tick_us.at(0.99) * 1e-3);
+    fmt::print(
+        "removed {} of {} hexels ({:.3f} ml), hottest {:.0f} C, force at most {:.2f} N, energy imbalance {:.1e}\n",
+        record.last.hexels_burnt + record.last.hexels_fallen, record.hexels_initial,
+        record.last.volume_removed_m3 * 1e6, celsius_from_kelvin(record.max_temperature_K), record.force_N.max(),
+        record.energy_imbalance);
     for (const Injury& injury : record.injuries)
-        fmt::print("injured: {} ({} hexels burnt away, {} damaged, first at {:.2f} s)\n", injury.structure, injury.hexels_removed,
-                   injury.hexels_damaged, injury.first_time_s);
+        fmt::print("injured: {} ({} hexels burnt away, {} damaged, first at {:.2f} s)\n", injury.structure,
+                   injury.hexels_removed, injury.hexels_damaged, injury.first_time_s);
     if (record.directory.empty()) return;
     fmt::print("\nlook at {}/report.html\n", record.directory);
     std::string rest;

@@ -13,7 +13,8 @@ int simulate(const SimulateOptions& options) {
     plan.scene = load_scene(options.scene);
     plan.output = options.output;
     if (plan.output.directory.empty())
-        plan.output.directory = (std::filesystem::path("out") / std::filesystem::path(options.scene.path).stem()).string();
+        plan.output.directory =
+            (std::filesystem::path("out") / std::filesystem::path(options.scene.path).stem()).string();
     auto setup = std::make_shared<simulation::Setup>(scene::build(plan.scene));
     plan.setup = setup;
     plan.ticks = std::max<std::int64_t>(1, std::llround(setup->duration_s / setup->model.tick_s));

@@ -17,7 +17,7 @@ class Quantiles {
 
   private:
     static constexpr double kLeast = 1e-3;
-    static constexpr double kBin = 1.01;  ///< ratio of neighbouring bins' edges
+    static constexpr double kBin = 1.01;      ///< ratio of neighbouring bins' edges
     std::array<std::uint32_t, 2800> bins_{};  ///< up to kLeast * 1.01^2800 = 1e9
     std::int64_t count_ = 0;
     double max_ = 0.0;

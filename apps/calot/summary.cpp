@@ -15,8 +15,8 @@ std::string summary_json(const RunRecord& r) {
     j["ticks"] = r.ticks;
     j["threads"] = r.threads;
     j["interrupted"] = r.interrupted;
-    j["status"] = r.status.ok ? Json("ok")
-                              : Json{{"field", r.status.field}, {"cell", r.status.cell}, {"tick", r.status.tick}};
+    j["status"] =
+        r.status.ok ? Json("ok") : Json{{"field", r.status.field}, {"cell", r.status.cell}, {"tick", r.status.tick}};
     j["phyxels_initial"] = r.phyxels_initial;
     j["phyxels_removed"] = r.phyxels_removed;
     j["hexels_initial"] = r.hexels_initial;
@@ -28,8 +28,9 @@ std::string summary_json(const RunRecord& r) {
     j["max_temperature_K"] = r.max_temperature_K;
     const tissue::EnergyBudget& e = r.last.energy_J;
     // `latent` is the latent part of `gas`; the others add up to `delivered`.
-    j["energy_J"] = {{"delivered", e.delivered}, {"stored", r.last.stored_J}, {"latent", e.latent},   {"gas", e.gas},
-                     {"surface", e.surface},     {"perfusion", e.perfusion},  {"outflow", e.outflow}, {"debris", e.debris}};
+    j["energy_J"] = {
+        {"delivered", e.delivered}, {"stored", r.last.stored_J}, {"latent", e.latent},   {"gas", e.gas},
+        {"surface", e.surface},     {"perfusion", e.perfusion},  {"outflow", e.outflow}, {"debris", e.debris}};
     j["energy_imbalance"] = r.energy_imbalance;
     // Means are over the ticks in contact.
     j["force_N"] = {{"max", r.force_N.max()},

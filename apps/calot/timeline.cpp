@@ -23,11 +23,11 @@ std::string csv_line(const TimelineRow& r) {
     return fmt::format(
         "{:.3f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:d},{:g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{},"
         "{:.6g},{:.6g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
-        r.time_s, r.tip_m.x, r.tip_m.y, r.tip_m.z, r.force_N.x, r.force_N.y, r.force_N.z, glm::length(r.force_N), r.pedal,
-        r.power_setting_W, r.generator.power_W, r.generator.voltage_V, r.generator.current_A, r.generator.impedance_Ohm,
-        r.max_temperature_K, r.hexels_burnt, r.hexels_fallen, r.links_severed, r.volume_removed_m3, r.emitted_kg,
-        r.energy_J.delivered, r.stored_J, r.energy_J.latent, r.energy_J.gas, r.energy_J.surface, r.energy_J.perfusion,
-        r.energy_J.outflow, r.energy_J.debris);
+        r.time_s, r.tip_m.x, r.tip_m.y, r.tip_m.z, r.force_N.x, r.force_N.y, r.force_N.z, glm::length(r.force_N),
+        r.pedal, r.power_setting_W, r.generator.power_W, r.generator.voltage_V, r.generator.current_A,
+        r.generator.impedance_Ohm, r.max_temperature_K, r.hexels_burnt, r.hexels_fallen, r.links_severed,
+        r.volume_removed_m3, r.emitted_kg, r.energy_J.delivered, r.stored_J, r.energy_J.latent, r.energy_J.gas,
+        r.energy_J.surface, r.energy_J.perfusion, r.energy_J.outflow, r.energy_J.debris);
 }
 
 }  // namespace
@@ -55,7 +55,8 @@ TimelineRow make_row(const simulation::Simulation& run, const tissue::Input& inp
     row.hexels_burnt = state.hexels_burnt;
     row.hexels_fallen = state.hexels_fallen;
     row.links_severed = state.links_severed;
-    row.volume_removed_m3 = static_cast<double>(state.hexels_burnt + state.hexels_fallen) * run.model().hexel_volume_m3();
+    row.volume_removed_m3 =
+        static_cast<double>(state.hexels_burnt + state.hexels_fallen) * run.model().hexel_volume_m3();
     row.emitted_kg = run.work().smoke.emitted_kg();
     row.energy_J = state.energy_J;
     row.stored_J = thermal::stored_J(run.model(), state);
@@ -85,6 +86,8 @@ void Timeline::flush() {
     if (file_ && std::fflush(file_.get()) != 0) fail();
 }
 
-void Timeline::fail() const { throw std::system_error(errno, std::generic_category(), "cannot write " + path_); }
+void Timeline::fail() const {
+    throw std::system_error(errno, std::generic_category(), "cannot write " + path_);
+}
 
 }  // namespace calot::app
