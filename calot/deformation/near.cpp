@@ -27,33 +27,45 @@ struct CapsuleF {
     Vec3f a, ab;
     float inverse_length2, radius;
     bool bare;
+    Vec3f low, high;  ///< a box that holds everything within the margin
 };
 
 float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
     const Vec3f ap = p - capsule.a;
-    const float t = std::clamp(glm::dot(ap, capsule.ab) * capsule.inverse_length2, 0.0f, 1.0f);
-    return glm::length(ap - t * capsule.ab) - capsule.radius;
+    const float t = std::min(1.0f, std::max(0.0f, glm::dot(ap, capsule.ab) * capsule.inverse_length2));
+    const Vec3f d = ap - t * capsule.ab;
+    return std::sqrt(glm::dot(d, d)) - capsule.radius;
 }
 
-/// Capsules in single precision, with the box about all of them. At most 16: more than any instrument has.
+/// Capsules in single precision. At most 16: more than any instrument has.
 struct Capsules {
     std::array<CapsuleF, 16> item;
     std::size_t count = 0;
-    Vec3f low{1e9f}, high{-1e9f};
 
     Capsules(const std::vector<tissue::Capsule>& capsules, double margin_m) {
         for (const tissue::Capsule& c : capsules) {
             if (count == item.size()) break;
             const Vec3f a(c.a_m), b(c.b_m), ab = b - a;
             const float length2 = glm::dot(ab, ab);
-            item[count++] = {a, ab, length2 > 0.0f ? 1.0f / length2 : 0.0f, static_cast<float>(c.radius_m), c.bare};
             const Vec3f margin(static_cast<float>(c.radius_m + margin_m));
-            low = glm::min(low, glm::min(a, b) - margin);
-            high = glm::max(high, glm::max(a, b) + margin);
+            item[count++] = {a,
+                             ab,
+                             length2 > 0.0f ? 1.0f / length2 : 0.0f,
+                             static_cast<float>(c.radius_m),
+                             c.bare,
+                             glm::min(a, b) - margin,
+                             glm::max(a, b) + margin};
         }
     }
-    bool box_holds(const Vec3f& p) const {
-        return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
+    /// Whether any capsule is within `reach_m`, not more than the margin, of a point.
+    bool any_within(const Vec3f& p, float reach_m) const {
+        for (std::size_t k = 0; k < count; ++k) {
+            const CapsuleF& c = item[k];
+            if (p.x < c.low.x || p.x > c.high.x || p.y < c.low.y || p.y > c.high.y || p.z < c.low.z || p.z > c.high.z)
+                continue;
+            if (distance_to_surface(c, p) <= reach_m) return true;
+        }
+        return false;
     }
     float distance(const Vec3f& p, std::uint32_t which = ~0u) const {
         float nearest = 1e9f;
@@ -215,8 +227,7 @@ void find_near(const tissue::Model& model, const tissue::State& state, tissue::E
                 const Vec3f world_m =
                     origin_m + spacing_m * Vec3f(Int3(x, y, z)) +
                     Vec3f(state.displacement_m[0][p], state.displacement_m[1][p], state.displacement_m[2][p]);
-                if (!capsules.box_holds(world_m) || capsules.distance(world_m) > static_cast<float>(phyxel_reach_m))
-                    continue;
+                if (!capsules.any_within(world_m, static_cast<float>(phyxel_reach_m))) continue;
                 add_hexels(model, state, exchange, work, shifts, capsules, phyxel, {x, y, z},
                            static_cast<float>(reach_m));
             }
