@@ -115,7 +115,7 @@ void list_outer_faces(Work& work, const Vec3& centre) {
 void assemble(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange, Work& work) {
     gather_conductivity(model, state, work);
     make_faces(work);
-    Array<float>& ground = work.grid.levels[0].ground;
+    const Cells ground = work.grid.levels[0].ground;
     std::fill(ground.begin(), ground.end(), 0.0f);
     const Vec3 centre = list_electrode(model, exchange, work);
     fix_electrode(work);

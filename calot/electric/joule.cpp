@@ -4,6 +4,9 @@
 // in series. Each half heats its own cell with J^2 / (2 sigma), so that both halves make g dphi^2 together and the sum
 // over all cells is V I to the last digit. All per volt squared and per spacing of hexels until the end.
 
+#include <algorithm>
+#include <array>
+
 #include "calot/base/parallel.h"
 #include "calot/electric/work.h"
 
@@ -16,7 +19,7 @@ float half_cell_heat(float flow, float sigma) {
 }
 
 /// Faces that are not in the matrix: at the electrode, and to the far return. Returns what is lost beyond the window.
-double add_fixed_faces(Work& work, const Array<float>& phi, Array<float>& heat) {
+double add_fixed_faces(Work& work, Cells phi, Cells heat) {
     double current = 0.0;
     for (const ElectrodeFace& face : work.electrode_faces) {
         const auto metal = static_cast<std::size_t>(face.electrode), cell = static_cast<std::size_t>(face.cell);
@@ -42,20 +45,22 @@ double add_fixed_faces(Work& work, const Array<float>& phi, Array<float>& heat) 
 void find_heat(const tissue::Model& model, const tissue::State& state, Work& work, double& tissue_W,
                double& elsewhere_W) {
     Level& fine = work.grid.levels[0];
-    const Array<float>& phi = work.grid.krylov.x;
-    Array<float>& heat = fine.solution;
+    const Cells phi = work.grid.krylov.x;
+    const Cells heat = fine.solution;
     parallel_for("electric.heat", 0, fine.group_capacity(), 2048, [&](std::int64_t b, std::int64_t e) {
         work.grid.kernels.heat(fine, work.sigma_S_per_m.data(), phi.data(), heat.data(), b, e);
     });
-    double held = add_fixed_faces(work, phi, heat), present = 0.0;
+    const double beyond = add_fixed_faces(work, phi, heat);
     const Window& window = work.window;
+    HeatSums sums;
     for (int c = window.begin.z; c < window.end.z; ++c)
-        for (int b = window.begin.y; b < window.end.y; ++b) {
-            const float* row = heat.data() + fine.index(0, b, c);
-            std::int64_t hexel = model.hexels.index(window.to_hexel({window.begin.x, b, c}));
-            for (int a = window.begin.x; a < window.end.x; ++a, ++hexel)
-                (state.hexel_present.test(hexel) ? present : held) += static_cast<double>(row[a]);
-        }
+        for (int b = window.begin.y; b < window.end.y; ++b)
+            work.grid.kernels.split(heat.data() + fine.index(window.begin.x, b, c), state.hexel_present.bytes(),
+                                    model.hexels.index(window.to_hexel({window.begin.x, b, c})),
+                                    window.end.x - window.begin.x, sums);
+    double present = 0.0, held = beyond;
+    for (const double sum : sums.kept) present += sum;
+    for (const double sum : sums.rest) held += sum;
     const double spacing = model.hexels.spacing_m;
     tissue_W = spacing * present;
     elsewhere_W = spacing * held;
@@ -63,8 +68,24 @@ void find_heat(const tissue::Model& model, const tissue::State& state, Work& wor
     work.electrode_conductance_S *= spacing;
 }
 
-void write_heat(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, Work& work,
-                double voltage_V) {
+namespace {
+
+/// One plane of the window, transposed: `to` has x along its second axis' unit steps.
+///     from[x * from_step + a]  ->  to[x + a * to_step]
+/// Eight values of a at a time, so that each line of memory is written from end to end while it is at hand.
+void transpose(const float* from, std::int64_t from_step, int count_x, int count_a, float scale, float* to,
+               std::int64_t to_step) {
+    constexpr int kTile = 8;
+    for (int low = 0; low < count_a; low += kTile) {
+        const int high = std::min(low + kTile, count_a);
+        for (int x = 0; x < count_x; ++x)
+            for (int a = low; a < high; ++a) to[x + a * to_step] = scale * from[x * from_step + a];
+    }
+}
+
+}  // namespace
+
+void write_heat(const tissue::Model& model, tissue::Exchange& exchange, Work& work, double voltage_V) {
     tissue::JouleHeat& joule = exchange.joule;
     if (joule.density_W_per_m3.size() < work.joule_W_per_m3.size()) joule.density_W_per_m3.swap(work.joule_W_per_m3);
     const Level& fine = work.grid.levels[0];
@@ -74,17 +95,26 @@ void write_heat(const tissue::Model& model, const tissue::State& state, tissue::
     // Per volt squared and spacing -> W/m^3.
     const double spacing = model.hexels.spacing_m;
     const auto scale = static_cast<float>(voltage_V * voltage_V / (spacing * spacing));
-    const std::int64_t box_y = joule.size.x, box_z = box_y * joule.size.y;
-    const std::int64_t along = window.axis.x == 0 ? 1 : window.axis.x == 1 ? box_y : box_z;
-    for (int c = window.begin.z; c < window.end.z; ++c)
-        for (int b = window.begin.y; b < window.end.y; ++b) {
-            const float* row = fine.solution.data() + fine.index(0, b, c);
-            const Int3 first = window.to_hexel({window.begin.x, b, c}), in_box = first - joule.low;
-            std::int64_t hexel = model.hexels.index(first);
-            float* out = joule.density_W_per_m3.data() + in_box.x + box_y * in_box.y + box_z * in_box.z;
-            for (int a = window.begin.x; a < window.end.x; ++a, ++hexel, out += along)
-                *out = state.hexel_present.test(hexel) ? scale * row[a] : 0.0f;
-        }
+    // Steps along each window axis: in the window, and in the box, where x is fastest.
+    const std::array<std::int64_t, 3> from_step{1, fine.row, fine.plane},
+        box_step{1, joule.size.x, std::int64_t{joule.size.x} * joule.size.y};
+    std::array<std::int64_t, 3> to_step{};
+    for (int k = 0; k < 3; ++k)
+        to_step[static_cast<std::size_t>(k)] = box_step[static_cast<std::size_t>(window.axis[k])];
+    const Int3 count = window.end - window.begin;
+    const float* from = fine.solution.data() + fine.index(window.begin.x, window.begin.y, window.begin.z);
+    float* to = joule.density_W_per_m3.data();
+    if (window.axis.x == 0) {
+        for (int c = 0; c < count.z; ++c)
+            for (int b = 0; b < count.y; ++b)
+                for (int a = 0; a < count.x; ++a)
+                    to[a + b * to_step[1] + c * to_step[2]] = scale * from[a + b * from_step[1] + c * from_step[2]];
+        return;
+    }
+    const std::size_t x = window.axis.y == 0 ? 1 : 2, other = 3 - x;
+    for (int n = 0; n < count[static_cast<int>(other)]; ++n)
+        transpose(from + n * from_step[other], from_step[x], count[static_cast<int>(x)], count.x, scale,
+                  to + n * to_step[other], to_step[0]);
 }
 
 }  // namespace calot::electric

@@ -1,7 +1,7 @@
 #pragma once
 // The loops over a level. Each exists twice with the same bytes as result: plain (kernels_reference.cpp) and wide
-// (kernels_simd.cpp). Multiplication and addition stay separate and sums keep 16 partial sums in double, one per
-// place in a group, so that the instruction set does not show in the result.
+// (kernels_simd.cpp). Multiplication and addition stay separate and sums keep 64 partial sums in double, one per place
+// in four consecutive groups, so that the instruction set does not show in the result.
 
 #include <cstdint>
 
@@ -16,8 +16,19 @@ inline constexpr float kCorrection = 1.6f;
 
 /// What an outer iteration works on, beside the finest level's vectors.
 struct Krylov {
-    Array<float> x;  ///< the potential
-    Array<float> p;  ///< search direction
+    CellStorage storage;
+    Cells x;  ///< the potential
+    Cells p;  ///< search direction
+};
+
+/// Partial sums of a dot product: one per place in this many consecutive groups. (Several, so that additions need not
+/// wait for one another.)
+inline constexpr std::int64_t kSums = 4 * kGroup;
+
+/// Partial sums of heat, one per place in a group.
+struct HeatSums {
+    double kept[kGroup] = {};
+    double rest[kGroup] = {};
 };
 
 struct Kernels {
@@ -34,6 +45,8 @@ struct Kernels {
     // Over level.groups[begin, end):
     /// scratch = A p; returns p . A p.
     double (*apply)(Level& level, const float* p, std::int64_t begin, std::int64_t end);
+    /// right -= A x, solution = weight right; returns right . right.
+    double (*start)(Level& level, const float* x, std::int64_t begin, std::int64_t end);
     /// x += alpha p, right -= alpha scratch, solution = weight right; returns right . right.
     double (*advance)(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::int64_t end);
     /// p = scratch + beta p.
@@ -50,6 +63,8 @@ struct Kernels {
     /// end).
     void (*heat)(const Level& level, const float* sigma, const float* phi, float* out, std::int64_t begin,
                  std::int64_t end);
+    /// heat[k] is kept where the bit (first + k) of `present` is set, else becomes 0; adds both to their sums.
+    void (*split)(float* heat, const std::uint8_t* present, std::int64_t first, std::int64_t count, HeatSums& sums);
 };
 
 Kernels reference_kernels();

@@ -8,11 +8,12 @@
 namespace calot::electric {
 namespace reference {
 
-/// Sixteen partial sums, one per place in a group, added in order at the end.
+/// Partial sums, added in order at the end.
 struct Sum {
-    std::array<double, kGroup> place{};
-    void add(std::int64_t k, float a, float b) {
-        place[static_cast<std::size_t>(k)] += static_cast<double>(a) * static_cast<double>(b);
+    std::array<double, kSums> place{};
+    /// `cell` counts from the first cell of the range.
+    void add(std::int64_t cell, float a, float b) {
+        place[static_cast<std::size_t>(cell % kSums)] += static_cast<double>(a) * static_cast<double>(b);
     }
     double total() const {
         double sum = 0.0;
@@ -84,7 +85,20 @@ double apply(Level& level, const float* p, std::int64_t begin, std::int64_t end)
             const std::int64_t i = level.groups[static_cast<std::size_t>(n)].at + k;
             const float value = row_times(level, p, i);
             level.scratch[static_cast<std::size_t>(i)] = value;
-            sum.add(k, p[i], value);
+            sum.add((n - begin) * kGroup + k, p[i], value);
+        }
+    return sum.total();
+}
+
+double start(Level& level, const float* x, std::int64_t begin, std::int64_t end) {
+    Sum sum;
+    for (std::int64_t n = begin; n < end; ++n)
+        for (std::int64_t k = 0; k < kGroup; ++k) {
+            const std::int64_t i = level.groups[static_cast<std::size_t>(n)].at + k;
+            const auto at = static_cast<std::size_t>(i);
+            level.right[at] = level.right[at] - row_times(level, x, i);
+            level.solution[at] = level.weight[at] * level.right[at];
+            sum.add((n - begin) * kGroup + k, level.right[at], level.right[at]);
         }
     return sum.total();
 }
@@ -97,7 +111,7 @@ double advance(Level& level, Krylov& krylov, float alpha, std::int64_t begin, st
             krylov.x[i] = krylov.x[i] + alpha * krylov.p[i];
             level.right[i] = level.right[i] - alpha * level.scratch[i];
             level.solution[i] = level.weight[i] * level.right[i];
-            sum.add(k, level.right[i], level.right[i]);
+            sum.add((n - begin) * kGroup + k, level.right[i], level.right[i]);
         }
     return sum.total();
 }
@@ -127,7 +141,7 @@ double smooth(Level& level, std::int64_t begin, std::int64_t end) {
             const auto at = static_cast<std::size_t>(i);
             const float rest = level.right[at] - row_times(level, level.solution.data(), i);
             level.scratch[at] = level.solution[at] + level.weight[at] * rest;
-            sum.add(k, level.right[at], level.scratch[at]);
+            sum.add((n - begin) * kGroup + k, level.right[at], level.scratch[at]);
         }
     return sum.total();
 }
@@ -172,12 +186,22 @@ void heat(const Level& level, const float* sigma, const float* phi, float* out, 
     }
 }
 
+void split(float* heat, const std::uint8_t* present, std::int64_t first, std::int64_t count, HeatSums& sums) {
+    for (std::int64_t k = 0; k < count; ++k) {
+        const std::int64_t hexel = first + k;
+        const bool kept = (present[hexel >> 3] >> (hexel & 7)) & 1;
+        double* place = kept ? sums.kept : sums.rest;
+        place[k % kGroup] += static_cast<double>(heat[k]);
+        if (!kept) heat[k] = 0.0f;
+    }
+}
+
 }  // namespace reference
 
 Kernels reference_kernels() {
     using namespace reference;
-    return {gather,    faces,    weights, aggregate,         apply,   advance,
-            direction, residual, smooth,  restrict_residual, correct, heat};
+    return {gather,    faces,    weights, aggregate,         apply,   start, advance,
+            direction, residual, smooth,  restrict_residual, correct, heat,  split};
 }
 
 }  // namespace calot::electric

@@ -30,19 +30,27 @@ HWY_INLINE std::int64_t lanes() {
     return static_cast<std::int64_t>(hn::Lanes(D()));
 }
 
-/// Sixteen partial sums in double, one per place in a group, whatever the width of a vector.
-struct Sum {
-    alignas(64) double place[kGroup] = {};
+/// Adds the products of a vector's lanes, in double, to as many places.
+HWY_INLINE void add_products(V a, V b, double* place) {
+#if HWY_TARGET == HWY_SCALAR
+    *place += static_cast<double>(hn::GetLane(a)) * static_cast<double>(hn::GetLane(b));
+#else
+    const hn::Half<D> half;
+    const hn::Rebind<double, decltype(half)> wide;
+    const auto low = hn::Mul(hn::PromoteTo(wide, hn::LowerHalf(half, a)), hn::PromoteTo(wide, hn::LowerHalf(half, b)));
+    const auto high = hn::Mul(hn::PromoteTo(wide, hn::UpperHalf(half, a)), hn::PromoteTo(wide, hn::UpperHalf(half, b)));
+    double* high_place = place + hn::Lanes(wide);
+    hn::Store(hn::Add(hn::Load(wide, place), low), wide, place);
+    hn::Store(hn::Add(hn::Load(wide, high_place), high), wide, high_place);
+#endif
+}
 
-    HWY_INLINE void add(const float* a, const float* b) {
-        const hn::CappedTag<double, 8> wide;
-        const hn::Rebind<float, decltype(wide)> narrow;
-        for (std::int64_t k = 0; k < kGroup; k += static_cast<std::int64_t>(hn::Lanes(wide))) {
-            const auto product =
-                hn::Mul(hn::PromoteTo(wide, hn::LoadU(narrow, a + k)), hn::PromoteTo(wide, hn::LoadU(narrow, b + k)));
-            hn::Store(hn::Add(hn::Load(wide, place + k), product), wide, place + k);
-        }
-    }
+/// Partial sums, whatever the width of a vector.
+struct Sum {
+    alignas(64) double place[kSums] = {};
+
+    /// `cell` counts from the first cell of the range.
+    HWY_INLINE void add(std::int64_t cell, V a, V b) { add_products(a, b, place + cell % kSums); }
     HWY_INLINE double total() const {
         double sum = 0.0;
         for (double value : place) sum += value;
@@ -164,8 +172,30 @@ double apply(Level& level, const float* p, std::int64_t begin, std::int64_t end)
     Sum sum;
     for (std::int64_t n = begin; n < end; ++n) {
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
-        for (std::int64_t i = at; i < at + kGroup; i += lanes()) store(rows.times(p, i), out + i);
-        sum.add(p + at, out + at);
+        for (std::int64_t k = 0; k < kGroup; k += lanes()) {
+            const std::int64_t i = at + k;
+            const V product = rows.times(p, i);
+            store(product, out + i);
+            sum.add((n - begin) * kGroup + k, load(p + i), product);
+        }
+    }
+    return sum.total();
+}
+
+double start(Level& level, const float* x, std::int64_t begin, std::int64_t end) {
+    const Rows rows(level);
+    float *right = level.right.data(), *solution = level.solution.data();
+    const float* weight = level.weight.data();
+    Sum sum;
+    for (std::int64_t n = begin; n < end; ++n) {
+        const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
+        for (std::int64_t k = 0; k < kGroup; k += lanes()) {
+            const std::int64_t i = at + k;
+            const V rest = hn::Sub(load(right + i), rows.times(x, i));
+            store(rest, right + i);
+            store(hn::Mul(load(weight + i), rest), solution + i);
+            sum.add((n - begin) * kGroup + k, rest, rest);
+        }
     }
     return sum.total();
 }
@@ -177,13 +207,14 @@ double advance(Level& level, Krylov& krylov, float alpha, std::int64_t begin, st
     Sum sum;
     for (std::int64_t n = begin; n < end; ++n) {
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
-        for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
+        for (std::int64_t k = 0; k < kGroup; k += lanes()) {
+            const std::int64_t i = at + k;
             store(hn::Add(load(x + i), hn::Mul(step, load(p + i))), x + i);
             const V rest = hn::Sub(load(right + i), hn::Mul(step, load(ap + i)));
             store(rest, right + i);
             store(hn::Mul(load(weight + i), rest), solution + i);
+            sum.add((n - begin) * kGroup + k, rest, rest);
         }
-        sum.add(right + at, right + at);
     }
     return sum.total();
 }
@@ -217,11 +248,13 @@ double smooth(Level& level, std::int64_t begin, std::int64_t end) {
     Sum sum;
     for (std::int64_t n = begin; n < end; ++n) {
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
-        for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
+        for (std::int64_t k = 0; k < kGroup; k += lanes()) {
+            const std::int64_t i = at + k;
             const V rest = hn::Sub(load(right + i), rows.times(solution, i));
-            store(hn::Add(load(solution + i), hn::Mul(load(weight + i), rest)), out + i);
+            const V smoothed = hn::Add(load(solution + i), hn::Mul(load(weight + i), rest));
+            store(smoothed, out + i);
+            sum.add((n - begin) * kGroup + k, load(right + i), smoothed);
         }
-        sum.add(right + at, out + at);
     }
     return sum.total();
 }
@@ -275,6 +308,29 @@ void heat(const Level& level, const float* sigma, const float* phi, float* out, 
     }
 }
 
+void split(float* heat, const std::uint8_t* present, std::int64_t first, std::int64_t count, HeatSums& sums) {
+    const hn::CappedTag<double, 8> wide;
+    const hn::Rebind<float, decltype(wide)> narrow;
+    const auto width = static_cast<std::int64_t>(hn::Lanes(wide));
+    std::int64_t k = 0;
+    for (; k + width <= count; k += width) {
+        const auto all_heat = hn::LoadU(narrow, heat + k);
+        const auto mask = simd::mask_at(narrow, present, first + k);
+        const auto kept = hn::IfThenElseZero(mask, all_heat), rest = hn::IfThenZeroElse(mask, all_heat);
+        hn::StoreU(kept, narrow, heat + k);
+        double *kept_sum = sums.kept + k % kGroup, *rest_sum = sums.rest + k % kGroup;
+        hn::StoreU(hn::Add(hn::LoadU(wide, kept_sum), hn::PromoteTo(wide, kept)), wide, kept_sum);
+        hn::StoreU(hn::Add(hn::LoadU(wide, rest_sum), hn::PromoteTo(wide, rest)), wide, rest_sum);
+    }
+    for (; k < count; ++k) {
+        const std::int64_t hexel = first + k;
+        const bool kept = (present[hexel >> 3] >> (hexel & 7)) & 1;
+        double* place = kept ? sums.kept : sums.rest;
+        place[k % kGroup] += static_cast<double>(heat[k]);
+        if (!kept) heat[k] = 0.0f;
+    }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace calot::electric
 HWY_AFTER_NAMESPACE();
@@ -287,6 +343,7 @@ HWY_EXPORT(faces);
 HWY_EXPORT(weights);
 HWY_EXPORT(aggregate);
 HWY_EXPORT(apply);
+HWY_EXPORT(start);
 HWY_EXPORT(advance);
 HWY_EXPORT(direction);
 HWY_EXPORT(residual);
@@ -294,16 +351,25 @@ HWY_EXPORT(smooth);
 HWY_EXPORT(restrict_residual);
 HWY_EXPORT(correct);
 HWY_EXPORT(heat);
+HWY_EXPORT(split);
 
 Kernels wide_kernels() {
     // Decide on the target first: what is taken below are then the functions themselves.
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    return {HWY_DYNAMIC_DISPATCH(gather),    HWY_DYNAMIC_DISPATCH(faces),
-            HWY_DYNAMIC_DISPATCH(weights),   HWY_DYNAMIC_DISPATCH(aggregate),
-            HWY_DYNAMIC_DISPATCH(apply),     HWY_DYNAMIC_DISPATCH(advance),
-            HWY_DYNAMIC_DISPATCH(direction), HWY_DYNAMIC_DISPATCH(residual),
-            HWY_DYNAMIC_DISPATCH(smooth),    HWY_DYNAMIC_DISPATCH(restrict_residual),
-            HWY_DYNAMIC_DISPATCH(correct),   HWY_DYNAMIC_DISPATCH(heat)};
+    return {HWY_DYNAMIC_DISPATCH(gather),
+            HWY_DYNAMIC_DISPATCH(faces),
+            HWY_DYNAMIC_DISPATCH(weights),
+            HWY_DYNAMIC_DISPATCH(aggregate),
+            HWY_DYNAMIC_DISPATCH(apply),
+            HWY_DYNAMIC_DISPATCH(start),
+            HWY_DYNAMIC_DISPATCH(advance),
+            HWY_DYNAMIC_DISPATCH(direction),
+            HWY_DYNAMIC_DISPATCH(residual),
+            HWY_DYNAMIC_DISPATCH(smooth),
+            HWY_DYNAMIC_DISPATCH(restrict_residual),
+            HWY_DYNAMIC_DISPATCH(correct),
+            HWY_DYNAMIC_DISPATCH(heat),
+            HWY_DYNAMIC_DISPATCH(split)};
 }
 
 }  // namespace calot::electric

@@ -15,15 +15,33 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
+#include <span>
 #include <vector>
 
 #include "calot/base/array.h"
+#include "calot/base/vec.h"
 
 namespace calot::electric {
 
 inline constexpr std::int64_t kGroup = 16;  ///< cells in a group: the widest vector
 
+/// A value for every cell of a level.
+using Cells = std::span<float>;
+
+/// Memory for vectors of one level. Arrays of half a megabyte would all begin on a page of their own, where loads wait
+/// for stores whose addresses end alike; each starts five cache lines further into its page than the one before.
+class CellStorage {
+  public:
+    /// Zeros for each of `vectors`, the first being the `slot`-th of all that are used together.
+    void allocate(std::int64_t length, int slot, std::initializer_list<Cells*> vectors);
+
+  private:
+    Array<float> memory_;
+};
+
 struct Level {
+    CellStorage storage;
     int cells = 0;            ///< along each edge of the cube
     int rows = 0;             ///< `cells` rounded up to even, so that 2x2x2 aggregates are whole
     std::int64_t row = 0;     ///< offset along the second axis
@@ -31,12 +49,12 @@ struct Level {
     std::int64_t first = 0;   ///< of cell (0, 0, 0)
     std::int64_t length = 0;  ///< of the arrays
 
-    std::array<Array<float>, 3> g;
-    Array<float> ground;
-    Array<float> weight;    ///< damping / (ground + sum of g): damped Jacobi. 0 where there is no unknown
-    Array<float> right;     ///< b of A z = b; on the finest level the residual of the outer iteration
-    Array<float> solution;  ///< z
-    Array<float> scratch;   ///< residual, then the smoothed z
+    std::array<Cells, 3> g;
+    Cells ground;
+    Cells weight;    ///< damping / (ground + sum of g): damped Jacobi. 0 where there is no unknown
+    Cells right;     ///< b of A z = b; on the finest level the residual of the outer iteration
+    Cells solution;  ///< z
+    Cells scratch;   ///< residual, then the smoothed z
 
     struct Group {
         std::int32_t at;      ///< index of its first cell
@@ -46,7 +64,14 @@ struct Level {
     std::vector<Group> groups;  ///< reserved for all
 
     static Level make(int cells);
+    Level() = default;
+    Level(Level&&) = default;  // not copied: its vectors point into its storage
+    Level& operator=(Level&&) = default;
     std::int64_t index(int a, int b, int c) const { return first + a + row * b + plane * c; }
+    Int3 coordinates(std::int64_t index) const {
+        const auto offset = static_cast<int>(index - first), in_plane = offset % static_cast<int>(plane);
+        return {in_plane % static_cast<int>(row), in_plane / static_cast<int>(row), offset / static_cast<int>(plane)};
+    }
     std::int64_t group_capacity() const { return row / kGroup * rows * rows; }
 };
 

@@ -34,34 +34,49 @@ double smooth(const Kernels& kernels, Level& level) {
                         [&](std::int64_t b, std::int64_t e) { return kernels.smooth(level, b, e); });
 }
 
+/// Lists the groups that hold an unknown. Those that are skipped must read as zero, so the others' vectors are wiped.
 void list_groups(Level& level) {
     level.groups.clear();
-    for (int c = 0; c < level.rows; ++c)
-        for (int b = 0; b < level.rows; ++b)
-            for (std::int64_t a = 0; a < level.row; a += kGroup) {
-                const auto at = static_cast<std::size_t>(level.index(static_cast<int>(a), b, c));
-                const float* weight = level.weight.data() + at;
-                if (std::any_of(weight, weight + kGroup, [](float w) { return w > 0.0f; }))
-                    level.groups.push_back({static_cast<std::int32_t>(at), 0, 0});
-            }
+    for (std::int64_t at = level.first; at < level.first + level.group_capacity() * kGroup; at += kGroup) {
+        const float* weight = level.weight.data() + at;
+        float largest = 0.0f;
+        for (std::int64_t k = 0; k < kGroup; ++k) largest = std::max(largest, weight[k]);
+        if (largest > 0.0f) {
+            level.groups.push_back({static_cast<std::int32_t>(at), 0, 0});
+            continue;
+        }
+        for (auto* values : {&level.right, &level.solution, &level.scratch})
+            std::fill_n(values->begin() + at, kGroup, 0.0f);
+    }
 }
 
 /// Where the children and parents of each group lie.
 void relate(Level& level, const Level* finer, const Level* coarser) {
     for (Level::Group& group : level.groups) {
-        const std::int64_t offset = group.at - level.first;
-        const auto a = static_cast<int>(offset % level.row), b = static_cast<int>(offset % level.plane / level.row),
-                   c = static_cast<int>(offset / level.plane);
-        if (finer != nullptr) group.child = static_cast<std::int32_t>(finer->index(2 * a, 2 * b, 2 * c));
-        if (coarser != nullptr) group.parent = static_cast<std::int32_t>(coarser->index(a / 2, b / 2, c / 2));
+        const Int3 cell = level.coordinates(group.at);
+        if (finer != nullptr) group.child = static_cast<std::int32_t>(finer->index(2 * cell.x, 2 * cell.y, 2 * cell.z));
+        if (coarser != nullptr)
+            group.parent = static_cast<std::int32_t>(coarser->index(cell.x / 2, cell.y / 2, cell.z / 2));
     }
 }
 
-void clear(Array<float>& values) {
+void clear(Cells values) {
     std::fill(values.begin(), values.end(), 0.0f);
 }
 
 }  // namespace
+
+void CellStorage::allocate(std::int64_t length, int slot, std::initializer_list<Cells*> vectors) {
+    constexpr std::size_t kPage = 1024, kStep = 5 * kGroup;  // floats
+    const std::size_t room = (static_cast<std::size_t>(length) + kPage - 1) / kPage * kPage;
+    const auto count = vectors.size(), first = static_cast<std::size_t>(slot);
+    memory_.assign(count * room + (first + count) * kStep, 0.0f);
+    std::size_t k = 0;
+    for (Cells* vector : vectors) {
+        *vector = Cells(memory_.data() + k * room + (first + k) * kStep, static_cast<std::size_t>(length));
+        ++k;
+    }
+}
 
 Level Level::make(int cells) {
     Level level;
@@ -72,10 +87,9 @@ Level Level::make(int cells) {
     // Neighbours reach a plane and a vector beyond; restriction and aggregation read up to two groups further.
     level.first = level.plane + 4 * kGroup;
     level.length = level.first + level.plane * level.rows + level.plane + 4 * kGroup;
-    const auto length = static_cast<std::size_t>(level.length);
-    for (auto* values : {&level.g[0], &level.g[1], &level.g[2], &level.ground, &level.weight, &level.right,
-                         &level.solution, &level.scratch})
-        values->assign(length, 0.0f);
+    level.storage.allocate(level.length, 0,
+                           {&level.g[0], &level.g[1], &level.g[2], &level.ground, &level.weight, &level.right,
+                            &level.solution, &level.scratch});
     level.groups.reserve(static_cast<std::size_t>(level.group_capacity()));
     return level;
 }
@@ -85,8 +99,7 @@ Multigrid make_multigrid(int cells, const Kernels& kernels) {
     grid.kernels = kernels;
     grid.levels.push_back(Level::make(cells));
     while (grid.levels.back().cells > kCoarsest) grid.levels.push_back(Level::make(grid.levels.back().rows / 2));
-    grid.krylov.x.assign(static_cast<std::size_t>(grid.levels[0].length), 0.0f);
-    grid.krylov.p.assign(static_cast<std::size_t>(grid.levels[0].length), 0.0f);
+    grid.krylov.storage.allocate(grid.levels[0].length, 8, {&grid.krylov.x, &grid.krylov.p});
     return grid;
 }
 
@@ -107,12 +120,7 @@ void build(Multigrid& grid) {
         Level& level = grid.levels[l];
         relate(level, l > 0 ? &grid.levels[l - 1] : nullptr,
                l + 1 < grid.levels.size() ? &grid.levels[l + 1] : nullptr);
-        // Groups that are skipped must read as zero.
-        clear(level.right);
-        clear(level.solution);
-        clear(level.scratch);
     }
-    clear(grid.krylov.p);
 }
 
 double precondition(Multigrid& grid) {
@@ -146,12 +154,8 @@ void start_from_x(Multigrid& grid, const std::vector<RightEntry>& right) {
     grid.right_norm2 = 0.0;
     for (const RightEntry& entry : right)
         grid.right_norm2 += static_cast<double>(entry.value) * fine.right[static_cast<std::size_t>(entry.cell)];
-    parallel_sum("electric.apply", 0, size(fine), kChunk,
-                 [&](std::int64_t b, std::int64_t e) { return grid.kernels.apply(fine, grid.krylov.x.data(), b, e); });
-    // x += 0 p, r = b - 1 * A x: the same loop as in the iteration, with p = 0.
-    clear(grid.krylov.p);
-    grid.residual_norm2 = parallel_sum("electric.advance", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
-        return grid.kernels.advance(fine, grid.krylov, 1.0f, b, e);
+    grid.residual_norm2 = parallel_sum("electric.start", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
+        return grid.kernels.start(fine, grid.krylov.x.data(), b, e);
     });
 }
 

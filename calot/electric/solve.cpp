@@ -27,7 +27,7 @@ std::size_t in_window(const Window& window, const Int3& cell) {
 void warm_start(const tissue::State& state, Work& work) {
     const Window& window = work.window;
     const Level& fine = work.grid.levels[0];
-    Array<float>& x = work.grid.krylov.x;
+    const Cells x = work.grid.krylov.x;
     const Int3 moved = window.low - state.field_low;
     const Int3 shift(moved[window.axis.x], moved[window.axis.y], moved[window.axis.z]);
     const int last = window.cells - 1;
@@ -47,17 +47,21 @@ void warm_start(const tissue::State& state, Work& work) {
 void keep_potential(tissue::State& state, Work& work) {
     const Window& window = work.window;
     const Level& fine = work.grid.levels[0];
-    Array<float>& x = work.grid.krylov.x;
-    for (std::int64_t i = 0; i < fine.length; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        x[at] = fine.weight[at] > 0.0f ? x[at] : 0.0f;
-    }
-    for (const std::int32_t cell : work.electrode_cells) x[static_cast<std::size_t>(cell)] = 1.0f;
+    const Cells x = work.grid.krylov.x;
+    const float* weight = fine.weight.data();
     for (int c = 0; c < window.cells; ++c)
         for (int b = 0; b < window.cells; ++b) {
-            const float* row = x.data() + fine.index(0, b, c);
-            std::copy(row, row + window.cells, state.potential.data() + in_window(window, {0, b, c}));
+            const std::int64_t row = fine.index(0, b, c);
+            float* kept = state.potential.data() + in_window(window, {0, b, c});
+            for (int a = 0; a < window.cells; ++a)
+                kept[a] = x[static_cast<std::size_t>(row + a)] =
+                    weight[row + a] > 0.0f ? x[static_cast<std::size_t>(row + a)] : 0.0f;
         }
+    for (const std::int32_t cell : work.electrode_cells) {
+        x[static_cast<std::size_t>(cell)] = 1.0f;
+        const Int3 place = fine.coordinates(cell);
+        state.potential[in_window(window, place)] = 1.0f;
+    }
     state.field_low = window.low;
 }
 
@@ -79,7 +83,7 @@ WorkPtr make_work(const tissue::Model& model, const Kernels& kernels) {
     work->grid = make_multigrid(cells, kernels);
     const auto length = static_cast<std::size_t>(work->grid.levels[0].length);
     const std::size_t side = static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
-    work->sigma_S_per_m.assign(length, 0.0f);
+    work->storage.allocate(work->grid.levels[0].length, 10, {&work->sigma_S_per_m});
     work->electrode = BitArray(static_cast<std::int64_t>(length));
     work->electrode_cells.reserve(2 * side);  // metal inside the window touches far fewer
     work->electrode_faces.reserve(6 * work->electrode_cells.capacity());
@@ -115,7 +119,7 @@ void finish_field(const tissue::Model& model, tissue::State& state, tissue::Exch
     state.generator = drive(input, model.electric, work.conductance_S);
     if (state.generator.power_W == 0.0) return switch_off(state, exchange);
     const double volt2 = state.generator.voltage_V * state.generator.voltage_V;
-    write_heat(model, state, exchange, work, state.generator.voltage_V);
+    write_heat(model, exchange, work, state.generator.voltage_V);
     exchange.joule.total_W = tissue_W * volt2;
     exchange.joule.outflow_W = elsewhere_W * volt2;
 }

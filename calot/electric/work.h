@@ -30,7 +30,8 @@ struct Work {
 
     // The present solve; indices are those of the finest level.
     Window window;
-    Array<float> sigma_S_per_m;  ///< conductivity of each cell, 0 = gas
+    CellStorage storage;
+    Cells sigma_S_per_m;  ///< conductivity of each cell, 0 = gas
     BitArray electrode;
     std::vector<std::int32_t> electrode_cells;
     std::vector<ElectrodeFace> electrode_faces;
@@ -60,7 +61,6 @@ void assemble(const tissue::Model& model, const tissue::State& state, const tiss
 void find_heat(const tissue::Model& model, const tissue::State& state, Work& work, double& tissue_W,
                double& elsewhere_W);
 /// Writes Exchange::joule for the voltage.
-void write_heat(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, Work& work,
-                double voltage_V);
+void write_heat(const tissue::Model& model, tissue::Exchange& exchange, Work& work, double voltage_V);
 
 }  // namespace calot::electric

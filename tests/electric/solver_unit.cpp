@@ -37,10 +37,10 @@ TEST(Solver, PreconditionerIsSymmetricPositive) {
         return v;
     };
     auto precondition_of = [&](const Array<float>& v) {
-        fine.right = v;
+        std::copy(v.begin(), v.end(), fine.right.begin());
         for (std::size_t i = 0; i < length; ++i) fine.solution[i] = fine.weight[i] * v[i];
         EXPECT_GT(precondition(rig.work->grid), 0.0);
-        return fine.scratch;
+        return Array<float>(fine.scratch.begin(), fine.scratch.end());
     };
     auto dot = [&](const Array<float>& a, const Array<float>& b) {
         double sum = 0.0;
