@@ -1,41 +1,9 @@
 // The same bytes for any number of threads, whether cold blocks are skipped or not, and from a snapshot.
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include <hwy/targets.h>
 
 #include "calot/base/parallel.h"
 #include "thermal/burn_bodies.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-// Counts allocations of the whole test program.
-void* operator new(std::size_t bytes) {
-    ++allocations;
-    if (void* p = std::malloc(bytes)) return p;
-    throw std::bad_alloc();
-}
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-    ++allocations;
-    const auto a = static_cast<std::size_t>(alignment);
-    if (void* p = std::aligned_alloc(a, (bytes + a - 1) / a * a)) return p;
-    throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept {
-    std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-    std::free(p);
-}
-void operator delete(void* p, std::align_val_t) noexcept {
-    std::free(p);
-}
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-    std::free(p);
-}
 
 namespace calot::thermal {
 
@@ -104,18 +72,6 @@ TEST(HeatDeterminism, OnlyWarmBlocksWork) {
     while (run.state.tick < 100) burn_tick(run);
     EXPECT_GT(run.work.blocks.size(), 0u);
     EXPECT_LT(run.work.blocks.size(), run.work.warm.size() / 4);
-}
-
-TEST(HeatDeterminism, StepsDoNotAllocate) {
-    const ThreadLimit limit(1);
-    HeatRun run(burn_model());
-    while (run.state.tick < kTicks) {
-        if (run.state.tick % 8 == 0) heat_spot(run, run.state.tick);
-        const long before = allocations;
-        run.tick();
-        ASSERT_EQ(allocations - before, 0) << "tick " << run.state.tick;
-    }
-    EXPECT_GT(run.state.hexels_burnt, 0);
 }
 
 namespace {
