@@ -86,14 +86,15 @@ FrameUniforms make_frame(const View& view, int width, int height) {
                             static_cast<float>(kBarrel), pulse_at(view.time_s));
     frame.pixels = glm::vec4(static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
                              1.0f / static_cast<float>(height));
-    const int capsules = std::min<int>(kMaxCapsules, static_cast<int>(view.instrument.size()));
-    for (int k = 0; k < capsules; ++k) {
-        const tissue::Capsule& capsule = view.instrument[static_cast<std::size_t>(k)];
-        frame.capsule_a[static_cast<std::size_t>(k)] =
-            glm::vec4(Vec3f(capsule.a_m), static_cast<float>(capsule.radius_m));
-        frame.capsule_b[static_cast<std::size_t>(k)] = glm::vec4(Vec3f(capsule.b_m), capsule.bare ? 1.0f : 0.0f);
+    for (std::size_t k = 0; k < kMaxCapsules; ++k) {
+        frame.capsule_a[k] = glm::vec4(0.0f, 0.0f, 1e3f, 1e-6f);  // far away: casts none
+        frame.capsule_b[k] = glm::vec4(0.0f, 1.0f, 1e3f, 0.0f);
+        if (k >= view.instrument.size()) continue;
+        const tissue::Capsule& capsule = view.instrument[k];
+        frame.capsule_a[k] = glm::vec4(Vec3f(capsule.a_m), static_cast<float>(capsule.radius_m));
+        frame.capsule_b[k] = glm::vec4(Vec3f(capsule.b_m), capsule.bare ? 1.0f : 0.0f);
     }
-    frame.counts = glm::ivec4(capsules, static_cast<int>(frame_number % 64), 0, 0);
+    frame.counts = glm::ivec4(0, static_cast<int>(frame_number % 64), 0, 0);
     return frame;
 }
 

@@ -8,10 +8,12 @@
 
 namespace calot::render {
 
-inline constexpr int kMaxCapsules = 8;  ///< of an instrument, for shadows
+/// Capsules of an instrument that cast shadows, the first ones: foot, two parts of the heel, shaft. A constant, so that
+/// shaders unroll the loop over them; llvmpipe takes four times as long otherwise.
+inline constexpr int kMaxCapsules = 4;
 inline constexpr double kNear_m = 0.004;
 inline constexpr double kFar_m = 0.6;
-inline constexpr double kRoundOverHeight = 1.12;  ///< diameter of the round image over the picture's height
+inline constexpr double kRoundOverHeight = 1.26;  ///< diameter of the round image over the picture's height
 inline constexpr double kBarrel = 0.10;           ///< how much more the middle is magnified than the edge
 
 /// Uniform block "Frame" (std140), see shaders_common.cpp.

@@ -62,18 +62,12 @@ float fractal_noise(const Vec3f& at, int period, int octaves, std::uint64_t seed
     return sum;
 }
 
-struct Worley {
-    float nearest = 1e9f;  ///< in cells
-    float border = 0.0f;   ///< distance to the bisecting plane with the second nearest
-    float random = 0.0f;
-};
-
-Worley worley(const Vec3f& at, int period, std::uint64_t seed) {
+/// Distance to the bisecting plane between the two nearest of a jittered lattice of seeds, in cells.
+float cell_border(const Vec3f& at, int period, std::uint64_t seed) {
     const Vec3f p = at * static_cast<float>(period);
     const Int3 cell(glm::floor(p));
     float first = 1e9f, second = 1e9f;
     Vec3f first_at(0.0f), second_at(0.0f);
-    Worley result;
     for (int z = -1; z <= 1; ++z)
         for (int y = -1; y <= 1; ++y)
             for (int x = -1; x <= 1; ++x) {
@@ -86,28 +80,26 @@ Worley worley(const Vec3f& at, int period, std::uint64_t seed) {
                     second_at = first_at;
                     first = d2;
                     first_at = seed_at;
-                    result.random = unit(mix64(bits), 0);
                 } else if (d2 < second) {
                     second = d2;
                     second_at = seed_at;
                 }
             }
-    result.nearest = std::sqrt(first);
-    result.border = 0.5f * (second - first) / std::max(1e-3f, glm::length(second_at - first_at));
-    return result;
+    return 0.5f * (second - first) / std::max(1e-3f, glm::length(second_at - first_at));
 }
 
 std::uint8_t byte(float value) {
     return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
 }
 
-/// RGB = gradient / slope about 0.5, A = height.
-std::vector<std::uint8_t> with_gradient(const std::vector<float>& height, float slope) {
+/// RGB = gradient of `height` / slope about 0.5, A = `last`.
+std::vector<std::uint8_t> with_gradient(const std::vector<float>& height, float slope, const std::vector<float>& last) {
     const int n = kNoiseSize;
     std::vector<std::uint8_t> texels(4 * height.size());
-    auto at = [&](int x, int y, int z) {
-        return height[static_cast<std::size_t>((wrap(z, n) * n + wrap(y, n)) * n + wrap(x, n))];
+    auto place = [&](int x, int y, int z) {
+        return static_cast<std::size_t>((wrap(z, n) * n + wrap(y, n)) * n + wrap(x, n));
     };
+    auto at = [&](int x, int y, int z) { return height[place(x, y, z)]; };
     parallel_for("render.noise", 0, n, 8, [&](std::int64_t low, std::int64_t high) {
         for (int z = static_cast<int>(low); z < high; ++z)
             for (int y = 0; y < n; ++y)
@@ -115,9 +107,9 @@ std::vector<std::uint8_t> with_gradient(const std::vector<float>& height, float 
                     const Vec3f gradient = 0.5f * static_cast<float>(n) *
                                            Vec3f(at(x + 1, y, z) - at(x - 1, y, z), at(x, y + 1, z) - at(x, y - 1, z),
                                                  at(x, y, z + 1) - at(x, y, z - 1));
-                    std::uint8_t* texel = &texels[4 * static_cast<std::size_t>((z * n + y) * n + x)];
+                    std::uint8_t* texel = &texels[4 * place(x, y, z)];
                     for (int axis = 0; axis < 3; ++axis) texel[axis] = byte(0.5f + 0.5f * gradient[axis] / slope);
-                    texel[3] = byte(at(x, y, z));
+                    texel[3] = byte(last[place(x, y, z)]);
                 }
     });
     return texels;
@@ -129,9 +121,8 @@ NoiseTextures make_noise() {
     const int n = kNoiseSize;
     const std::size_t count = static_cast<std::size_t>(n) * n * n;
     NoiseTextures textures;
-    textures.cells.resize(4 * count);
     textures.smooth.resize(4 * count);
-    std::vector<float> pillow(count), bump(count);
+    std::vector<float> pillow(count), border(count), bump(count), fine_border(count);
     parallel_for("render.noise", 0, n, 4, [&](std::int64_t low, std::int64_t high) {
         for (std::int64_t z = low; z < high; ++z)
             for (int y = 0; y < n; ++y)
@@ -140,25 +131,21 @@ NoiseTextures make_noise() {
                     const Vec3f at =
                         (Vec3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) + 0.5f) /
                         static_cast<float>(n);
-                    const Worley coarse = worley(at, kCoarseCells, 11);
-                    const Worley fine = worley(at, kFineCells, 12);
-                    std::uint8_t* cells = &textures.cells[4 * texel];
-                    cells[0] = byte(coarse.nearest);
-                    cells[1] = byte(2.0f * coarse.border);
-                    cells[2] = byte(coarse.random);
-                    cells[3] = byte(2.0f * fine.border);
-                    const float inward = std::min(1.0f, coarse.border / 0.42f);
+                    const float coarse = cell_border(at, kCoarseCells, 11);
+                    border[texel] = 2.0f * coarse;
+                    const float inward = std::min(1.0f, coarse / kPillowWidth);
                     pillow[texel] = 1.0f - (1.0f - inward) * (1.0f - inward);
+                    fine_border[texel] = 2.0f * cell_border(at, kFineCells, 12);
+                    bump[texel] = 0.5f * fractal_noise(at, 8, 3, 51);
                     std::uint8_t* smooth = &textures.smooth[4 * texel];
                     smooth[0] = byte(0.5f + 0.6f * fractal_noise(at, 4, 4, 21));
                     smooth[1] = byte(0.5f + 0.7f * gradient_noise(at, 5, 31));
                     smooth[2] = byte(0.5f + 0.7f * gradient_noise(at, 5, 32));
                     smooth[3] = byte(0.5f + 0.6f * fractal_noise(at, 16, 2, 41));
-                    bump[texel] = 0.5f + 0.5f * fractal_noise(at, 8, 3, 51);
                 }
     });
-    textures.pillow = with_gradient(pillow, kPillowSlope);
-    textures.bump = with_gradient(bump, kBumpSlope);
+    textures.lobules = with_gradient(pillow, kPillowSlope, border);
+    textures.bump = with_gradient(bump, kBumpSlope, fine_border);
     return textures;
 }
 

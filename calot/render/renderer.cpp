@@ -33,7 +33,7 @@ using gl::VertexArray;
 static_assert(sizeof(TissueVertex) == 18 * sizeof(float), "the tissue's attributes are uploaded as they lie");
 static_assert(sizeof(InstrumentVertex) == 13 * sizeof(float));
 
-enum Unit { kCells, kPillow, kSmooth, kBump, kOcclusion, kScene, kSmokeUnit, kBloom, kDepth, kUnits };
+enum Unit { kLobules, kSmooth, kBump, kOcclusion, kScene, kSmokeUnit, kBloom, kDepth, kUnits };
 
 struct Settings {
     double scale;           ///< pixels of the scene per pixel of the picture
@@ -110,7 +110,7 @@ struct Renderer::Impl {
     int width = 0;
     int height = 0;
 
-    std::array<Texture, 4> noise;
+    std::array<Texture, 3> noise;
     Buffer frame_buffer{GL_UNIFORM_BUFFER};
     VertexArray nothing;  ///< for draws without attributes
 
@@ -156,11 +156,17 @@ void bind(Unit unit, GLenum target, const Texture& texture) {
     glBindTexture(target, texture.name());
 }
 
+/// Attributes that organs have not: at body temperature, never burnt.
+void set_organ_attributes() {
+    glVertexAttrib4f(3, 310.15f, 310.15f, 0.0f, 0.0f);
+    glVertexAttrib1f(4, 0.0f);
+    glVertexAttrib4f(5, 0.0f, 0.0f, 0.0f, 0.0f);
+}
+
 /// All samplers a program may have; it ignores those that it has not.
 void set_samplers(const Program& program) {
     program.use();
-    program.sampler("u_cells", kCells);
-    program.sampler("u_pillow", kPillow);
+    program.sampler("u_lobules", kLobules);
     program.sampler("u_smooth", kSmooth);
     program.sampler("u_bump", kBump);
     program.sampler("u_occlusion", kOcclusion);
@@ -175,7 +181,9 @@ std::string common_defines(Quality quality, bool hdr, const Settings& settings) 
     std::string lines = "#define QUALITY " + std::to_string(static_cast<int>(quality)) + "\n";
     if (hdr) lines += "#define HDR\n";
     lines += "#define OCCLUSION_SAMPLES " + std::to_string(std::max(1, settings.occlusion_samples)) + "\n";
+    lines += "#define CAPSULES " + std::to_string(kMaxCapsules) + "\n";
     lines += "#define PILLOW_SLOPE " + std::to_string(kPillowSlope) + "\n";
+    lines += "#define PILLOW_WIDTH " + std::to_string(kPillowWidth) + "\n";
     lines += "#define BUMP_SLOPE " + std::to_string(kBumpSlope) + "\n";
     return lines;
 }
@@ -217,8 +225,7 @@ Renderer::Impl::Impl(int wanted_width, int wanted_height, Quality wanted)
 
     const NoiseTextures textures = make_noise();
     glActiveTexture(GL_TEXTURE0);
-    noise[kCells] = upload_noise(textures.cells);
-    noise[kPillow] = upload_noise(textures.pillow);
+    noise[kLobules] = upload_noise(textures.lobules);
     noise[kSmooth] = upload_noise(textures.smooth);
     noise[kBump] = upload_noise(textures.bump);
 
@@ -331,21 +338,24 @@ void Renderer::Impl::draw_depth() {
     glClearDepthf(1.0f);
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
+    glEnable(GL_CULL_FACE);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDisable(GL_CULL_FACE);
     mask_depth.use();
     nothing.bind();
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 2 * 96 + 2);
+    if (quality == Quality::low) {  // where geometry costs about as much as shading, twice through is too much
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        return;
+    }
+    glEnable(GL_CULL_FACE);
     tissue_depth.use();
     tissue.draw();
     for (const OrganOnGpu& organ : organs) {
-        // Attributes that organs have not: at body temperature, never burnt.
-        glVertexAttrib4f(3, 310.15f, 310.15f, 0.0f, 0.0f);
-        glVertexAttrib1f(4, 0.0f);
-        glVertexAttrib4f(5, 0.0f, 0.0f, 0.0f, 0.0f);
+        set_organ_attributes();
         organ.mesh.draw();
     }
     instrument_depth.use();
@@ -367,27 +377,30 @@ void Renderer::Impl::draw_colour() {
     scene.bind();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
-    glDepthMask(GL_FALSE);
+    glDepthMask(quality == Quality::low ? GL_TRUE : GL_FALSE);
+    glEnable(GL_CULL_FACE);
+    // Nearest first, so that what is hidden is not shaded.
+    instrument_colour.use();
+    instrument.draw();
     tissue_colour.use();
     tissue.draw();
     for (const OrganOnGpu& organ : organs) {
         organ_program(organ.look).use();
-        glVertexAttrib4f(3, 310.15f, 310.15f, 0.0f, 0.0f);
-        glVertexAttrib1f(4, 0.0f);
-        glVertexAttrib4f(5, 0.0f, 0.0f, 0.0f, 0.0f);
+        set_organ_attributes();
         organ.mesh.draw();
     }
-    instrument_colour.use();
-    instrument.draw();
+    glDepthMask(GL_FALSE);
     // The spark adds its light.
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
+    glDisable(GL_CULL_FACE);
     spark.use();
     glUniform1f(spark.location("u_size"), 0.0045f);
     nothing.bind();
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     glDisable(GL_BLEND);
     glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
     glDepthMask(GL_TRUE);
 }
 
@@ -460,9 +473,8 @@ void Renderer::resize(int width, int height) {
 
 void Renderer::draw(const View& view) {
     impl_->upload(view);
-    const GLenum targets[] = {GL_TEXTURE_3D, GL_TEXTURE_3D, GL_TEXTURE_3D, GL_TEXTURE_3D};
-    for (int unit = kCells; unit <= kBump; ++unit)
-        bind(static_cast<Unit>(unit), targets[unit], impl_->noise[static_cast<std::size_t>(unit)]);
+    for (const Unit unit : {kLobules, kSmooth, kBump})
+        bind(unit, GL_TEXTURE_3D, impl_->noise[static_cast<std::size_t>(unit)]);
     impl_->draw_depth();
     gl::check("the depth pass");
     if (impl_->quality != Quality::low) impl_->draw_occlusion();

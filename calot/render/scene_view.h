@@ -31,7 +31,8 @@ void fill_tissue(const tissue::Model& model, const tissue::State& state, std::sp
 /// Which look an organ or material name asks for ("cystic_artery" -> artery ...); peritoneum when nothing fits.
 Look look_of(const std::string& name);
 
-/// Meshes of the model's rigid organs within `reach_m` of the hexel lattice, at about `spacing_m`.
-std::vector<OrganMesh> organ_meshes(const tissue::Model& model, double spacing_m = 1.2e-3, double reach_m = 0.09);
+/// Meshes of the model's rigid organs within `reach_m` of the hexel lattice, at about `spacing_m`: ducts and arteries
+/// finer, liver and backdrop coarser.
+std::vector<OrganMesh> organ_meshes(const tissue::Model& model, double spacing_m = 1.6e-3, double reach_m = 0.07);
 
 }  // namespace calot::render

@@ -14,9 +14,9 @@ layout(std140) uniform Frame {
     vec4 u_projection;   // tan of half angles x, y; near, far [m]
     vec4 u_round;        // radii of the round image in NDC x, y; barrel distortion; pulse 0..1
     vec4 u_pixels;       // size of the scene target, 1 / size
-    vec4 u_capsule_a[8]; // end, radius
-    vec4 u_capsule_b[8]; // end, 1 = bare
-    ivec4 u_counts;      // capsules, frame
+    vec4 u_capsule_a[CAPSULES]; // end, radius
+    vec4 u_capsule_b[CAPSULES]; // end, 1 = bare
+    ivec4 u_counts;      // unused, frame
 };
 
 // Distance along the axis from a depth value [m].
@@ -70,10 +70,14 @@ float capsule_openness(vec3 p, vec3 n, vec3 a, vec3 b, float radius) {
 }
 
 float ggx(float nh, float rough) {
-    float a2 = rough * rough * rough * rough;
+    float a2 = rough * rough;
+    a2 *= a2;
     float d = nh * nh * (a2 - 1.0) + 1.0;
     return a2 / (3.14159265 * d * d);
 }
+
+// Falls off with the square of the distance, tamed close by as the camera's exposure does.
+float scope_falloff(float d2) { return 2.0 / (1.0 + d2 / (u_axis.w * u_axis.w)); }
 
 // The wet cavity, as seen in a mirror: lit tissue ahead, the dark scope behind.
 vec3 surroundings(vec3 direction) {
@@ -87,7 +91,7 @@ vec3 light_material(Material m, vec3 p, bool shadowed) {
     vec3 sum = vec3(0.0), shine = vec3(0.0);
     float open = m.occlusion;
     if (shadowed)
-        for (int k = 0; k < u_counts.x; ++k)
+        for (int k = 0; k < CAPSULES; ++k)
             open *= capsule_openness(p, m.normal, u_capsule_a[k].xyz, u_capsule_b[k].xyz, u_capsule_a[k].w);
     for (int light = 0; light < 2; ++light) {
         vec3 to_light = u_light[light].xyz - p;
@@ -95,18 +99,21 @@ vec3 light_material(Material m, vec3 p, bool shadowed) {
         vec3 l = to_light * inversesqrt(d2);
         float aim = clamp(-dot(l, u_axis.xyz), 0.0, 1.0);
         float beam = aim * aim;
-        float power = u_light[light].w * beam * beam * beam * pow(u_axis.w * u_axis.w / d2, 0.85);
+        float power = u_light[light].w * beam * beam * beam * scope_falloff(d2);
+#if QUALITY > 0
         if (shadowed)
-            for (int k = 0; k < u_counts.x; ++k)
+#else
+        if (shadowed && light == 0)   // the brighter one; a low tier spares the other's shadow
+#endif
+            for (int k = 0; k < CAPSULES; ++k)
                 power *= capsule_light(p, to_light, u_capsule_a[k].xyz, u_capsule_b[k].xyz, u_capsule_a[k].w);
         vec3 h = normalize(l + view);
-        float lh = clamp(dot(l, h), 0.1, 1.0);
         vec3 lambert = clamp((vec3(dot(m.normal, l)) + m.wrap) / (1.0 + m.wrap), 0.0, 1.0);
         sum += power * lambert * lambert;
-        float fresnel = pow(1.0 - lh, 5.0);
-        float base = ggx(clamp(dot(m.normal, h), 0.0, 1.0), m.rough) * (m.specular + (1.0 - m.specular) * fresnel);
-        float film = ggx(clamp(dot(m.coat_normal, h), 0.0, 1.0), m.coat_rough) * (0.03 + 0.97 * fresnel) * m.coat;
-        shine += power * clamp(dot(m.coat_normal, l), 0.0, 1.0) * (base + film) * 0.25 / (lh * lh);
+        // Light and eye are close together: l.h is about 1, so that Fresnel's term stays at normal incidence.
+        float base = ggx(clamp(dot(m.normal, h), 0.0, 1.0), m.rough) * m.specular;
+        float film = ggx(clamp(dot(m.coat_normal, h), 0.0, 1.0), m.coat_rough) * 0.045 * m.coat;
+        shine += power * clamp(dot(m.coat_normal, l), 0.0, 1.0) * (base + film) * 0.25;
     }
     vec3 to_spark = u_spark.xyz - p;
     float spark = u_spark.w * 1.2e-6 / (dot(to_spark, to_spark) + 1.0e-6);
@@ -114,8 +121,9 @@ vec3 light_material(Material m, vec3 p, bool shadowed) {
     // Light that has bounced about the cavity: warm, and gone where surfaces hide each other.
     float facing = clamp(dot(m.normal, view), 0.0, 1.0);
     vec3 bounced = vec3(0.085, 0.052, 0.040) * (0.4 + 0.6 * facing);
-    vec3 hidden = pow(vec3(open), 1.0 + 0.6 * (1.0 - m.albedo));   // colour deepens in creases
-    float rim = 0.03 + 0.97 * pow(1.0 - clamp(dot(m.coat_normal, view), 0.0, 1.0), 5.0);
+    vec3 hidden = open * mix(vec3(1.0), vec3(open), 0.6 * (1.0 - m.albedo));   // colour deepens in creases
+    float rim = 1.0 - clamp(dot(m.coat_normal, view), 0.0, 1.0);
+    rim = 0.03 + 0.97 * rim * rim * rim * rim * rim;
     vec3 mirrored = surroundings(reflect(-view, m.coat_normal)) * rim * m.coat * 0.5;
     return m.albedo * (sum * mix(vec3(1.0), hidden, 0.75) + bounced * hidden) + shine * (0.3 + 0.7 * open) + mirrored * open;
 }

@@ -57,9 +57,9 @@ void main() {
     vec3 colour = light_material(m, v_world, false);
     if (metal > 0.0) {
         // Steel, tinted straw to blue by heat, dull where tissue has baked on.
-        vec3 steel = mix(vec3(0.60, 0.57, 0.54), vec3(0.50, 0.38, 0.24), smoothstep(0.42, 0.70, wear.r));
+        vec3 steel = mix(vec3(0.66, 0.65, 0.64), vec3(0.60, 0.53, 0.44), smoothstep(0.45, 0.75, wear.r));
         steel = mix(steel, vec3(0.30, 0.30, 0.38), 0.5 * smoothstep(0.56, 0.72, wear.g));
-        float baked = smoothstep(0.55, 0.70, wear.b + 0.25 * (brush.a - 0.5));
+        float baked = smoothstep(0.60, 0.78, wear.b + 0.25 * (brush.a - 0.5));
         vec3 shine = vec3(0.0);
         for (int light = 0; light < 2; ++light) {
             vec3 to_light = u_light[light].xyz - v_world;
@@ -68,10 +68,10 @@ void main() {
             // Brushed metal spreads its highlight around the wire: half of the deviation across does not count.
             vec3 spread = normalize(h - 0.35 * dot(h, v_along) * v_along);
             float lobe = 0.7 * ggx(clamp(dot(m.coat_normal, spread), 0.0, 1.0), 0.36) + 0.5 * ggx(clamp(dot(m.coat_normal, h), 0.0, 1.0), 0.22);
-            shine += u_light[light].w * pow(u_axis.w * u_axis.w / d2, 0.85) * lobe * 0.25;
+            shine += u_light[light].w * scope_falloff(d2) * lobe * 0.30;
         }
         vec3 mirrored = reflect(-view, m.coat_normal);
-        vec3 around_it = 1.25 * surroundings(mirrored) + vec3(0.10, 0.09, 0.085) * smoothstep(0.0, 1.0, -dot(mirrored, u_axis.xyz));
+        vec3 around_it = 0.8 * mix(surroundings(mirrored), vec3(dot(surroundings(mirrored), vec3(0.33))), 0.55) + vec3(0.16, 0.15, 0.145) * smoothstep(0.0, 1.0, -dot(mirrored, u_axis.xyz));
         float rim = pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 5.0);
         vec3 bright = (shine + around_it) * (steel + (1.0 - steel) * rim) * (0.45 + 0.55 * m.occlusion);
         vec3 to_spark = u_spark.xyz - v_world;
@@ -132,7 +132,7 @@ void main() {
         vec3 to_light = u_light[k].xyz - a_place.xyz;
         float d2 = dot(to_light, to_light);
         float aim = clamp(-dot(to_light, u_axis.xyz) * inversesqrt(d2), 0.0, 1.0);
-        light += u_light[k].w * aim * aim * pow(u_axis.w * u_axis.w / d2, 0.7);
+        light += u_light[k].w * aim * aim * 2.0 / (1.0 + d2 / (u_axis.w * u_axis.w));
     }
     vec3 to_spark = u_spark.xyz - a_place.xyz;
     vec3 tint = mix(vec3(0.40, 0.41, 0.46), vec3(0.74, 0.74, 0.76), a_optics.y);   // smoke is bluish, steam white

@@ -126,10 +126,10 @@ void main() {
     colour += 0.16 * decode(texture(u_bloom, uv).rgb);
 #endif
     // Filmic curve (Narkowicz 2015, after ACES), a little warm.
-    colour *= vec3(1.06, 1.0, 0.95) * 0.82;
-    colour *= 1.0 - 0.35 * r2 * r2;
-    colour = clamp(colour * (2.51 * colour + 0.03) / (colour * (2.43 * colour + 0.59) + 0.14), 0.0, 1.0);
-    float edge = 1.0 - smoothstep(0.965, 1.0, sqrt(r2));
+    colour *= vec3(1.05, 1.0, 0.96) * 0.95;
+    colour *= 1.0 - 0.45 * r2 * r2;
+    colour = clamp(colour * (2.51 * colour + 0.03) / (colour * (2.43 * colour + 0.59) + 0.125), 0.0, 1.0);
+    float edge = 1.0 - smoothstep(0.955, 1.0, sqrt(r2));
     colour = pow(colour, vec3(1.0 / 2.2)) * edge;
 #if QUALITY == 0
     colour += (noise(gl_FragCoord.xy + 5.588 * float(u_counts.y)) - 0.5) * 0.020 * edge;

@@ -33,13 +33,13 @@ void main() {
 // Colours are linear. Each look gives albedo, how much the pillows and bumps show, and how wet it is.
 const char* const kTissueLooks = R"(
 struct Samples {
-    vec4 cell;    // see noise.h
-    vec4 pillow;  // gradient of lobules (-1..1), height
+    float border; // distance to the septum between lobules, see noise.h
+    float cells;  // distance to the border of fine cells
+    float pillow; // height of lobules, 0..1
     vec4 base;
     vec4 fine;    // smooth noise at a smaller scale
     float vein;   // 0..1, branching lines
     float vein_fine;
-    float relief; // fine bumps, 0..1
 };
 struct Look {
     vec3 albedo;
@@ -55,18 +55,19 @@ float level_line(float value, float width) { return 1.0 - smoothstep(0.35 * widt
 
 Look fat_look(Samples s) {
     Look look;
-    float septum = 1.0 - smoothstep(0.03, 0.26, s.cell.g);
-    vec3 deep = vec3(0.66, 0.34, 0.055), pale = vec3(0.90, 0.69, 0.30);
-    float tone = clamp(0.15 + 0.45 * s.pillow.w + 1.5 * (s.base.r - 0.5) + 0.45 * (s.cell.b - 0.5), 0.0, 1.0);
+    float septum = 1.0 - smoothstep(0.0, 0.34, s.border + 0.22 * (s.fine.r - 0.5));
+    vec3 deep = vec3(0.74, 0.40, 0.075), pale = vec3(0.93, 0.74, 0.36);
+    float tone = clamp(0.20 + 0.45 * s.pillow + 1.7 * (s.base.r - 0.5), 0.0, 1.0);
     look.albedo = mix(deep, pale, tone);
-    look.albedo = mix(look.albedo, vec3(0.97, 0.84, 0.55), 0.35 * smoothstep(0.55, 0.85, s.fine.a));
-    look.albedo = mix(look.albedo, vec3(0.66, 0.27, 0.16), 0.55 * septum);
-    look.albedo = mix(look.albedo, vec3(0.50, 0.055, 0.035), 0.75 * s.vein + 0.45 * s.vein_fine);
-    look.pillow = 0.42;
-    look.bump = 0.16;
-    look.rough = 0.42;
-    look.coat = 0.9;
-    look.coat_rough = 0.20;
+    look.albedo = mix(look.albedo, vec3(0.98, 0.86, 0.58), 0.45 * smoothstep(0.50, 0.80, s.fine.a));
+    look.albedo = mix(look.albedo, vec3(0.70, 0.30, 0.14), 0.58 * septum);
+    look.albedo = mix(look.albedo, vec3(0.80, 0.36, 0.24), 0.35 * smoothstep(0.55, 0.75, s.base.b));   // flushed patches
+    look.albedo = mix(look.albedo, vec3(0.52, 0.06, 0.035), 0.70 * s.vein + 0.50 * s.vein_fine);
+    look.pillow = 0.46;
+    look.bump = 0.11;
+    look.rough = 0.40;
+    look.coat = 1.2;
+    look.coat_rough = 0.17;
     return look;
 }
 Look duct_look(Samples s) {
@@ -94,8 +95,8 @@ Look artery_look(Samples s, float pulse) {
 Look gallbladder_look(Samples s) {
     Look look;
     float tone = clamp(0.5 + 1.5 * (s.base.r - 0.5), 0.0, 1.0);
-    look.albedo = mix(vec3(0.19, 0.27, 0.215), vec3(0.42, 0.48, 0.37), tone);
-    look.albedo = mix(look.albedo, vec3(0.62, 0.55, 0.33), 0.45 * smoothstep(0.56, 0.72, s.base.b));   // fat shining through
+    look.albedo = mix(vec3(0.20, 0.28, 0.225), vec3(0.37, 0.45, 0.36), tone);
+    look.albedo = mix(look.albedo, vec3(0.62, 0.55, 0.33), 0.40 * smoothstep(0.45, 0.85, s.base.b));   // fat shining through
     look.albedo = mix(look.albedo, vec3(0.47, 0.09, 0.07), 0.8 * s.vein + 0.5 * s.vein_fine);
     look.pillow = 0.05;
     look.bump = 0.06;
@@ -106,21 +107,21 @@ Look gallbladder_look(Samples s) {
 }
 Look liver_look(Samples s) {
     Look look;
-    float mottle = clamp(0.5 + 1.3 * (s.base.r - 0.5) + 0.9 * (s.fine.r - 0.5), 0.0, 1.0);
-    look.albedo = mix(vec3(0.17, 0.032, 0.022), vec3(0.36, 0.105, 0.065), mottle);
-    look.albedo = mix(look.albedo, vec3(0.42, 0.17, 0.11), 0.30 * (1.0 - smoothstep(0.0, 0.22, s.cell.a)));
+    float mottle = clamp(0.5 + 0.7 * (s.base.r - 0.5) + 0.9 * (s.fine.r - 0.5), 0.0, 1.0);
+    look.albedo = mix(vec3(0.155, 0.028, 0.021), vec3(0.27, 0.066, 0.044), mottle);
+    look.albedo = mix(look.albedo, vec3(0.36, 0.13, 0.085), 0.22 * (1.0 - smoothstep(0.0, 0.25, s.cells)));
     look.pillow = 0.03;
-    look.bump = 0.085;
+    look.bump = 0.06;
     look.rough = 0.36;
-    look.coat = 1.0;
-    look.coat_rough = 0.17;
+    look.coat = 1.5;
+    look.coat_rough = 0.20;
     return look;
 }
 Look peritoneum_look(Samples s) {
     Look look;
     float tone = clamp(0.5 + 1.6 * (s.base.r - 0.5), 0.0, 1.0);
     look.albedo = mix(vec3(0.58, 0.22, 0.16), vec3(0.80, 0.46, 0.35), tone);
-    look.albedo = mix(look.albedo, vec3(0.85, 0.62, 0.28), 0.55 * smoothstep(0.50, 0.70, s.base.b));   // fat beneath
+    look.albedo = mix(look.albedo, vec3(0.85, 0.62, 0.28), 0.55 * smoothstep(0.42, 0.85, s.base.b));   // fat beneath
     look.albedo = mix(look.albedo, vec3(0.50, 0.06, 0.05), 0.75 * s.vein + 0.5 * s.vein_fine);
     look.pillow = 0.10;
     look.bump = 0.09;
@@ -148,8 +149,7 @@ in vec3 v_rest;
 in vec4 v_burn;
 in float v_exposure;
 in vec4 v_weights;
-uniform sampler3D u_cells;
-uniform sampler3D u_pillow;
+uniform sampler3D u_lobules;
 uniform sampler3D u_smooth;
 uniform sampler3D u_bump;
 uniform sampler2D u_occlusion;
@@ -157,32 +157,51 @@ out vec4 o_colour;
 
 vec3 slope_of(vec3 texel) { return 2.0 * texel - 1.0; }
 
+float pillow_height(float border) {
+    float rest = 1.0 - min(1.0, border * (0.5 / PILLOW_WIDTH));
+    return 1.0 - rest * rest;
+}
+
 void main() {
     vec3 p = v_rest;
+
     Samples s;
     s.base = texture(u_smooth, p / 26.0);
-    vec3 warped = p + 5.0 * (s.base.rgb - 0.5);
-    s.cell = texture(u_cells, warped / 25.0);
-    vec4 pillow = texture(u_pillow, warped / 25.0);
-    vec4 bump = texture(u_bump, p / 10.0);
-    // Slopes in height per mm, for 1 mm of height.
-    vec3 lobules = slope_of(pillow.rgb) * (PILLOW_SLOPE / 25.0);
-    vec3 bumps = slope_of(bump.rgb) * (BUMP_SLOPE / 10.0);
-    s.pillow = vec4(lobules, pillow.w);
-    s.relief = bump.w;
+    vec3 warped = p + 6.0 * (s.base.rgb - 0.5);
 #if QUALITY > 0
     s.fine = texture(u_smooth, p.yzx / 8.0);
-    vec4 small = texture(u_bump, p.zxy / 4.1);
-    bumps += 0.45 * slope_of(small.rgb) * (BUMP_SLOPE / 4.1);
-    vec4 lobes = texture(u_pillow, (warped.yzx + 3.0 * (s.fine.rgb - 0.5)) / 9.7);
-    lobules += 0.30 * slope_of(lobes.rgb).zxy * (PILLOW_SLOPE / 9.7);
-    s.pillow.w = mix(s.pillow.w, lobes.w, 0.3);
+    warped += 1.8 * (s.fine.rgb - 0.5);
 #else
     s.fine = s.base.argb;
 #endif
-    float here = smoothstep(0.42, 0.60, s.base.b);
-    s.vein = level_line(s.base.g, 0.016) * here;
-    s.vein_fine = level_line(s.fine.g, 0.035) * smoothstep(0.50, 0.62, s.fine.b) * (0.4 + 0.6 * here);
+    vec4 lobule = texture(u_lobules, warped / 25.0);
+    vec4 bump = texture(u_bump, p / 10.0);
+    // Slopes for 1 mm of height, per mm.
+    vec3 lobules = slope_of(lobule.rgb) * (PILLOW_SLOPE / 25.0);
+    vec3 bumps = slope_of(bump.rgb) * (BUMP_SLOPE / 10.0);
+    s.border = lobule.a;
+    s.pillow = pillow_height(lobule.a);
+    s.cells = bump.a;
+#if QUALITY > 0
+    vec4 small = texture(u_bump, p.zxy / 4.1);
+    bumps += 0.45 * slope_of(small.rgb) * (BUMP_SLOPE / 4.1);
+    vec4 lobes = texture(u_lobules, (warped.yzx + 3.0 * (s.fine.rgb - 0.5)) / 9.7);
+    lobules += 0.30 * slope_of(lobes.rgb).zxy * (PILLOW_SLOPE / 9.7);
+    s.pillow = mix(s.pillow, pillow_height(lobes.a), 0.3);
+#endif
+    // Vessels: long wandering lines with thin branches near them.
+#if QUALITY > 0
+    vec4 course = texture(u_smooth, (p.zxy + 5.0 * (s.base.rgb - 0.5)) / 71.0);
+    float off = course.g + 0.06 * (s.base.r - 0.5) - 0.5;
+    float trunk = smoothstep(0.40, 0.62, course.b);
+    s.vein = level_line(off + 0.5, 0.004 + 0.008 * trunk) * smoothstep(0.05, 0.4, trunk);
+    float near = trunk * (1.0 - smoothstep(0.03, 0.16, abs(off)));
+    s.vein_fine = level_line(s.base.g + 0.08 * (s.fine.r - 0.5), 0.020) * near * smoothstep(0.40, 0.55, s.base.b) +
+                  0.5 * level_line(s.fine.g, 0.03) * near * smoothstep(0.50, 0.62, s.fine.b);
+#else
+    s.vein = level_line(s.base.g, 0.012) * smoothstep(0.45, 0.65, s.base.b);
+    s.vein_fine = 0.0;
+#endif
 
     float pulse = u_round.w;
 #ifdef MIXED
@@ -197,8 +216,7 @@ void main() {
 #else
     Look look = ORGAN_LOOK;
 #endif
-    float veil = 0.0;
-    vec3 glow = vec3(0.0);
+        vec3 glow = vec3(0.0);
 #ifdef MIXED
     // --- What burning leaves behind. Ragged by noise: steps follow the peak temperature shifted by up to 20 K.
     float ragged = 60.0 * (s.base.a - 0.5) + 40.0 * (s.fine.r - 0.5);
@@ -208,7 +226,7 @@ void main() {
     float charred = smoothstep(215.0, 285.0, peak);
     // Laid bare: raw, frothy, wet, with thin pale strands.
     float bare = smoothstep(0.15, 0.65, v_exposure);
-    float froth = 1.0 - smoothstep(0.02, 0.30, s.cell.a);
+    float froth = 1.0 - smoothstep(0.02, 0.30, s.cells);
     float strand = level_line(s.fine.b, 0.05) * smoothstep(0.45, 0.6, s.base.a);
     vec3 raw = look.albedo * mix(vec3(0.95, 0.74, 0.52), vec3(0.92, 0.46, 0.34), smoothstep(0.42, 0.60, s.fine.r));
     raw = mix(raw, vec3(0.90, 0.80, 0.60), 0.16 * froth + 0.5 * strand);
@@ -217,11 +235,11 @@ void main() {
     look.bump += 0.14 * bare;
     look.coat_rough = mix(look.coat_rough, 0.15, bare);
 
-    vec3 pale = mix(vec3(0.80, 0.70, 0.52), vec3(0.88, 0.82, 0.70), s.fine.a);
-    look.albedo = mix(look.albedo, pale, 0.78 * blanched);
-    vec3 brown = mix(vec3(0.34, 0.145, 0.035), vec3(0.13, 0.045, 0.014), smoothstep(150.0, 230.0, peak + 60.0 * (s.relief - 0.5)));
+    vec3 pale = mix(vec3(0.70, 0.56, 0.36), vec3(0.84, 0.76, 0.60), clamp(0.5 + 2.0 * (s.fine.a - 0.5) + 1.2 * (s.base.a - 0.5), 0.0, 1.0));
+    look.albedo = mix(look.albedo, pale, (0.55 + 0.35 * s.base.a) * blanched);
+    vec3 brown = mix(vec3(0.34, 0.145, 0.035), vec3(0.13, 0.045, 0.014), smoothstep(150.0, 230.0, peak + 60.0 * (s.fine.g - 0.5)));
     look.albedo = mix(look.albedo, brown, 0.92 * browned);
-    float crack = 1.0 - smoothstep(0.03, 0.16, s.cell.a);
+    float crack = 1.0 - smoothstep(0.03, 0.16, s.cells);
     float ash = smoothstep(0.64, 0.74, s.fine.a) * smoothstep(0.5, 0.65, s.base.a);
     vec3 char_colour = mix(vec3(0.016, 0.012, 0.010), vec3(0.075, 0.038, 0.022), 0.7 * crack);
     char_colour = mix(char_colour, vec3(0.34, 0.31, 0.28), 0.7 * ash);
@@ -242,7 +260,7 @@ void main() {
     tilt -= dot(tilt, up) * up;
     Material m;
     m.normal = normalize(up - 0.8 * tilt);
-    m.coat_normal = normalize(up - 0.55 * look.pillow * (lobules - dot(lobules, up) * up) - 0.8 * look.bump * (bumps - dot(bumps, up) * up));
+    m.coat_normal = normalize(up - 0.75 * look.pillow * (lobules - dot(lobules, up) * up) - 0.8 * look.bump * (bumps - dot(bumps, up) * up));
     m.albedo = look.albedo;
     m.rough = look.rough;
     m.specular = 0.035;
@@ -252,7 +270,7 @@ void main() {
     // Thin at grazing view: light that went through comes back warm.
     float edge = 1.0 - clamp(dot(up, toward), 0.0, 1.0);
     m.albedo *= mix(vec3(1.0), vec3(1.06, 0.86, 0.74), edge * edge);
-    m.occlusion = mix(0.72, 1.0, s.pillow.w * min(1.0, 2.4 * look.pillow) + 1.0 - min(1.0, 2.4 * look.pillow));
+    m.occlusion = mix(0.72, 1.0, s.pillow * min(1.0, 2.4 * look.pillow) + 1.0 - min(1.0, 2.4 * look.pillow));
 #if QUALITY > 0
     m.occlusion *= texture(u_occlusion, gl_FragCoord.xy * u_pixels.zw).r;
 #endif
