@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "calot/render/frame.h"
 #include "render/support.h"
 
 namespace calot::render {
@@ -20,7 +21,7 @@ TEST_F(Pictures, round_image_on_black) {
     demo::Scene scene(1.2e-3);
     Renderer renderer(kWidth, kHeight, Quality::low);
     const Image image = picture(renderer, scene.view());
-    const double radius = 0.56 * kHeight;  // kRoundOverHeight / 2
+    const double radius = 0.5 * kRoundOverHeight * kHeight;
     const Vec3 outside = mean_where(
         image, [&](int x, int y) { return std::hypot(x + 0.5 - kWidth / 2, y + 0.5 - kHeight / 2) > radius + 1.5; });
     EXPECT_EQ(luma(outside), 0.0);
