@@ -47,8 +47,9 @@ TEST(Determinism, RecordingReplaysToTheSameState) {
     std::size_t next = 0;
     for (const tissue::Input& input : recording.inputs) {
         again.tick(input);
-        if (next < recording.hashes.size() && recording.hashes[next].tick == again.state().tick)
+        if (next < recording.hashes.size() && recording.hashes[next].tick == again.state().tick) {
             EXPECT_EQ(tissue::hash_fields(again.state()), recording.hashes[next++].fields);
+        }
     }
     EXPECT_EQ(next, recording.hashes.size());
     EXPECT_EQ(tissue::hash(again.state()), tissue::hash(run.state()));

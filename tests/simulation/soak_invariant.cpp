@@ -33,7 +33,7 @@ tissue::Input circling(const Vec3& trocar, double time_s) {
 }  // namespace
 
 TEST(Soak, TenMinutesKeepMemoryFlat) {
-    auto setup = std::make_shared<Setup>();
+    auto setup = std::make_shared<simulation::Setup>();
     setup->anatomy = anatomy::make_block({.size_m = Vec3(0.0144, 0.0144, 0.0072)});
     setup->model = tissue::sample(setup->anatomy, {.hexel_spacing_m = 1.2e-3, .hexels_per_edge = 2});
     Simulation run(setup);
