@@ -38,7 +38,7 @@ struct ElectricParameters {
     int window_cells = 48;                ///< edge of the cubic window about the tip, hexels
     double relative_residual = 1e-2;      ///< conjugate gradients stop here
     int max_iterations = 60;
-    double voltage_limit_V = 300.0;       ///< RMS; the source is power-limited and never exceeds this
+    double voltage_limit_V = 700.0;       ///< RMS, 1 kV peak of a cutting sine; the power-limited source never exceeds this
     double contact_gap_m = 0.05e-3;       ///< bare metal this close to a hexel's surface carries current into it
 };
 
