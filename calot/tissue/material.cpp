@@ -28,6 +28,8 @@ std::vector<Material> default_materials() {
     fat.thermal_conductivity_W_per_mK = 0.21;
     fat.water_mass_fraction = 0.15;
     fat.dry_specific_heat_J_per_kgK = 2023.5;
+    fat.removal_temperature_K = 473.15;
+    fat.solid_latent_heat_J_per_kg = 0.3e6;
     fat.perfusion_m3_per_s_kg = perfusion_from_ml_per_min_kg(33.0);
     fat.electric_conductivity_S_per_m = 0.025;
     fat.source = "E 2-10 kPa, middle of the published range; thermal: IT'IS database; electric: doi 10.1186/s12938-018-0473-9";
