@@ -62,10 +62,6 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     clock.lap(Stage::deformation);
 
     electric::solve_potential(model, state, exchange, input, *work.electric);
-    // Heat that the current makes outside the tissue's hexels: nothing here warms, but the generator delivered it.
-    const double outflow_J = exchange.joule.outflow_W * model.tick_s;
-    state.energy_J.outflow += outflow_J;
-    state.energy_J.delivered += outflow_J;
     clock.lap(Stage::electric);
 
     thermal::conduct(model, state, exchange, work.thermal);

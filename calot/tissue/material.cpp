@@ -11,7 +11,8 @@ constexpr double perfusion_from_ml_per_min_kg(double flow) { return flow * 1e-6 
 // tissue database, Gabriel 1996; fat at 400 kHz to 1 MHz: 0.0248-0.0251 S/m (doi 10.1186/s12938-018-0473-9).
 // Dry specific heats follow from those of living tissue, less their water's: (c - f 4187) / (1 - f).
 // Removal temperature and solid latent heat are chosen, not published: dried organic matter pyrolyses at 250-400 C and
-// takes about 1 MJ/kg to gasify.
+// takes about 1 MJ/kg to gasify. Fat goes sooner and for less: its melted lipid smokes at about 190 C, and most of it
+// runs and spatters off instead of turning to gas.
 constexpr const char* kMechanics = "mechanics: PMC6925591 Table 1; thermal and electric: IT'IS database, Gabriel 1996";
 
 }  // namespace
