@@ -31,8 +31,8 @@ struct Body {
     void report(benchmark::State& run) const {
         const auto phyxels = static_cast<double>(state.phyxel_present.count());
         run.counters["phyxels"] = phyxels;
-        run.counters["ns_per_phyxel"] =
-            benchmark::Counter(phyxels * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+        run.counters["ns_per_phyxel"] = benchmark::Counter(
+            phyxels * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
     }
 };
 
@@ -43,11 +43,10 @@ void sizes(benchmark::internal::Benchmark* bench) {
 void deformation_substep(benchmark::State& run) {
     Body body(run);
     const auto view = deformation::KernelView::make(body.model, body.state, body.work);
-    const std::int64_t first = body.model.phyxels.first, last = body.model.phyxels.last;
     for (auto _ : run) {
-        deformation::sweep_velocities(view, first, last);
-        deformation::sweep_displacements(view, first, last);
-        deformation::sweep_gradients(view, first, last);
+        deformation::sweep_velocities(view, body.work.groups);
+        deformation::sweep_displacements(view, body.work.groups);
+        deformation::sweep_gradients(view, body.work.groups);
     }
     body.report(run);
 }
@@ -65,7 +64,7 @@ BENCHMARK(deformation_substep_scalar)->Apply(sizes);
 void deformation_velocities(benchmark::State& run) {
     Body body(run);
     const auto view = deformation::KernelView::make(body.model, body.state, body.work);
-    for (auto _ : run) deformation::sweep_velocities(view, body.model.phyxels.first, body.model.phyxels.last);
+    for (auto _ : run) deformation::sweep_velocities(view, body.work.groups);
     body.report(run);
 }
 BENCHMARK(deformation_velocities)->Apply(sizes);
@@ -73,7 +72,7 @@ BENCHMARK(deformation_velocities)->Apply(sizes);
 void deformation_gradients(benchmark::State& run) {
     Body body(run);
     const auto view = deformation::KernelView::make(body.model, body.state, body.work);
-    for (auto _ : run) deformation::sweep_gradients(view, body.model.phyxels.first, body.model.phyxels.last);
+    for (auto _ : run) deformation::sweep_gradients(view, body.work.groups);
     body.report(run);
 }
 BENCHMARK(deformation_gradients)->Apply(sizes);

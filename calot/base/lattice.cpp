@@ -12,10 +12,14 @@ std::int64_t round_up(std::int64_t n, std::int64_t multiple) { return (n + multi
 }  // namespace
 
 Lattice Lattice::make(const Vec3& origin_m, double spacing_m, const Int3& size) {
-    assert(size.x >= 1 && size.y >= 1 && size.z >= 1 && spacing_m > 0.0);
     // Axes from shortest to longest; ties keep x before y before z, so that the layout is a function of size alone.
     std::array<int, 3> axes{0, 1, 2};
     std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return size[a] < size[b]; });
+    return make(origin_m, spacing_m, size, axes);
+}
+
+Lattice Lattice::make(const Vec3& origin_m, double spacing_m, const Int3& size, const std::array<int, 3>& axes) {
+    assert(size.x >= 1 && size.y >= 1 && size.z >= 1 && spacing_m > 0.0);
     const int fast = axes[0], middle = axes[1], slow = axes[2];
 
     Lattice lattice;

@@ -2,7 +2,7 @@
 // A box of cells on a cubic lattice. Arrays over it are planar, every neighbour is a constant offset away: no
 // neighbour lists, no gathers.
 //
-//   fastest axis = shortest side of the box, slowest = longest; each row, and each plane of rows, is followed by one
+//   fastest axis = shortest side of the box, slowest = longest, unless chosen otherwise; each row, and each plane of rows, is followed by one
 //   empty border cell (row) that it shares with the next:
 //
 //       [padding] c c c c . c c c c . c c c c .  . . . . .  [next plane] ... [padding]
@@ -12,6 +12,7 @@
 //   So index(x, y, z) is valid for x in [-1, size.x], likewise y, z, and all neighbours within one cell of a filled
 //   cell can be read without a test. Sweeps run linearly over [first, last) and mask by presence bits.
 
+#include <array>
 #include <cstdint>
 
 #include "calot/base/vec.h"
@@ -29,6 +30,9 @@ struct Lattice {
 
     /// A lattice of `size` cells. Requires size >= 1 along each axis.
     static Lattice make(const Vec3& origin_m, double spacing_m, const Int3& size);
+
+    /// The same with chosen axes, fastest first: for sparse fillings, the axis along which runs are longest.
+    static Lattice make(const Vec3& origin_m, double spacing_m, const Int3& size, const std::array<int, 3>& axes);
 
     std::int64_t index(int x, int y, int z) const {
         return first + std::int64_t{x} * stride.x + std::int64_t{y} * stride.y + std::int64_t{z} * stride.z;

@@ -16,10 +16,18 @@ using tissue::State;
 
 namespace {
 
-/// Cells of a parallel task: big enough that handing it out costs nothing, and fixed, so that it never depends on
-/// threads.
-constexpr std::int64_t kChunk = 8192;
-static_assert(kChunk % kKernelGrain == 0);
+/// Groups of a parallel task: big enough that handing it out costs nothing, and fixed, so that it never depends on
+/// threads. The standard scene is one task: a second thread would gain less than waiting for it may cost.
+constexpr std::int64_t kChunk = 512;
+
+using Sweep = void (*)(const KernelView&, Groups);
+
+void run(const char* name, Sweep sweep, const KernelView& view, const Work& work) {
+    const Groups groups(work.groups);
+    parallel_for(name, 0, static_cast<std::int64_t>(groups.size()), kChunk, [&](std::int64_t low, std::int64_t high) {
+        sweep(view, groups.subspan(static_cast<std::size_t>(low), static_cast<std::size_t>(high - low)));
+    });
+}
 
 std::int64_t first_bad_cell(const Model& model, const State& state) {
     for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
@@ -44,6 +52,16 @@ bool all_finite(const Model& model, const State& state) {
 }
 
 }  // namespace
+
+std::vector<std::int32_t> make_groups(const Model& model, const State& state) {
+    std::vector<std::int32_t> groups;
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last;) {
+        const bool filled = state.phyxel_present.test(p) || model.phyxel_ghost.test(p);
+        if (filled) groups.push_back(static_cast<std::int32_t>(p));
+        p += filled ? kGroupCells : 1;
+    }
+    return groups;
+}
 
 KernelView KernelView::make(const Model& model, State& state, Work& work) {
     KernelView view;
@@ -79,8 +97,7 @@ KernelView KernelView::make(const Model& model, State& state, Work& work) {
 void update_gradients(const Model& model, const State& state, Work& work) {
     // The view is of mutable arrays, but this sweep only reads the state.
     const KernelView view = KernelView::make(model, const_cast<State&>(state), work);
-    parallel_for("deformation.gradients", model.phyxels.first, model.phyxels.last, kChunk,
-                 [&](std::int64_t low, std::int64_t high) { sweep_gradients(view, low, high); });
+    run("deformation.gradients", sweep_gradients, view, work);
 }
 
 void integrate(const Model& model, State& state, tissue::Exchange& exchange, Work& work) {
@@ -88,19 +105,15 @@ void integrate(const Model& model, State& state, tissue::Exchange& exchange, Wor
     if (!state.status.ok) return;
     prepare_contacts(model, state, exchange, work);
     const KernelView view = KernelView::make(model, state, work);
-    const std::int64_t first = model.phyxels.first, last = model.phyxels.last;
     for (int substep = 0; substep < work.substeps; ++substep) {
         // Forces read the neighbours' displacements and moment stresses, gradients the neighbours' displacements:
         // each sweep must end everywhere before the next begins.
-        parallel_for("deformation.velocities", first, last, kChunk,
-                     [&](std::int64_t low, std::int64_t high) { sweep_velocities(view, low, high); });
+        run("deformation.velocities", sweep_velocities, view, work);
         return_ghost_impulses(state, work, view.decay);
         solve_contacts(model, state, work);
-        parallel_for("deformation.displacements", first, last, kChunk,
-                     [&](std::int64_t low, std::int64_t high) { sweep_displacements(view, low, high); });
+        run("deformation.displacements", sweep_displacements, view, work);
         move_ghosts(state, work);
-        parallel_for("deformation.gradients", first, last, kChunk,
-                     [&](std::int64_t low, std::int64_t high) { sweep_gradients(view, low, high); });
+        run("deformation.gradients", sweep_gradients, view, work);
     }
     exchange.contact_force_N = work.contact.impulse_Ns / -model.tick_s;
     if (!all_finite(model, state)) state.status = {false, "displacement_m", first_bad_cell(model, state), state.tick};

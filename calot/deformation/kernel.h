@@ -1,10 +1,12 @@
 #pragma once
-// The two sweeps of a substep, a vector of phyxels at a time; reference.h says what they compute. Within a range they
-// write only cells of that range, and lanes are independent: any split into ranges, any vector width and any
+// The two sweeps of a substep, a vector of phyxels at a time; reference.h says what they compute. They write only
+// cells of the groups that they are given, and lanes are independent: any split of the groups, any vector width and any
 // instruction set give the same bytes (no fused multiply-add, no sums across lanes).
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "calot/deformation/work.h"
 
@@ -35,15 +37,21 @@ struct KernelView {
     static KernelView make(const tissue::Model& model, tissue::State& state, Work& work);
 };
 
-/// Cells a range must be a multiple of, but for the last; it starts at Lattice::first plus a multiple of it.
-inline constexpr std::int64_t kKernelGrain = 64;
+/// Cells of a group: the widest vector. Narrower ones take a group in parts.
+inline constexpr std::int64_t kGroupCells = 16;
 
-/// G and M of the cells [begin, end).
-void sweep_gradients(const KernelView& view, std::int64_t begin, std::int64_t end);
-/// Velocities of the cells [begin, end) after a substep of elastic forces, gravity and damping. Ghosts, which have
-/// none, get the impulse [N s] of the forces on them instead.
-void sweep_velocities(const KernelView& view, std::int64_t begin, std::int64_t end);
-/// Displacements of the cells [begin, end) after a substep at the present velocities.
-void sweep_displacements(const KernelView& view, std::int64_t begin, std::int64_t end);
+/// The fewest groups that hold all phyxels and ghosts: each begins at the first cell that no earlier one holds. Sweeps
+/// run over ranges of this list, so that empty space costs nothing.
+std::vector<std::int32_t> make_groups(const tissue::Model& model, const tissue::State& state);
+
+using Groups = std::span<const std::int32_t>;
+
+/// G and M.
+void sweep_gradients(const KernelView& view, Groups groups);
+/// Velocities after a substep of elastic forces, gravity and damping. Ghosts, which have none, get the impulse [N s] of
+/// the forces on them instead.
+void sweep_velocities(const KernelView& view, Groups groups);
+/// Displacements after a substep at the present velocities.
+void sweep_displacements(const KernelView& view, Groups groups);
 
 }  // namespace calot::deformation

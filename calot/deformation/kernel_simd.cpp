@@ -190,20 +190,24 @@ HWY_INLINE void gradients_of(const KernelView& k, std::int64_t i) {
     }
 }
 
-template <tissue::ElasticLaw law>
-HWY_INLINE void gradients_in(const KernelView& k, std::int64_t begin, std::int64_t end) {
+/// Calls body(i) for the vectors of all groups in which `first` or `second` has a bit.
+template <class Body>
+HWY_INLINE void for_each_vector(Groups groups, const std::uint8_t* first, const std::uint8_t* second,
+                                const Body& body) {
     const auto lanes = static_cast<std::int64_t>(hn::Lanes(D()));
-    for (std::int64_t i = begin; i < end; i += lanes) {
-        if ((simd::bits_at(D(), k.present, i) | simd::bits_at(D(), k.ghost, i)) == 0) continue;
-        gradients_of<law>(k, i);
-    }
+    for (const std::int32_t group : groups)
+        for (std::int64_t i = group; i < group + kGroupCells; i += lanes)
+            if ((simd::bits_at(D(), first, i) | simd::bits_at(D(), second, i)) != 0) body(i);
 }
 
-void gradients(const KernelView& k, std::int64_t begin, std::int64_t end) {
+void gradients(const KernelView& k, Groups groups) {
     if (k.law == tissue::ElasticLaw::stable_neo_hookean)
-        gradients_in<tissue::ElasticLaw::stable_neo_hookean>(k, begin, end);
+        for_each_vector(groups, k.present, k.ghost,
+                        [&](std::int64_t i) HWY_ATTR { gradients_of<tissue::ElasticLaw::stable_neo_hookean>(k, i); });
     else
-        gradients_in<tissue::ElasticLaw::saint_venant_kirchhoff>(k, begin, end);
+        for_each_vector(groups, k.present, k.ghost, [&](std::int64_t i) HWY_ATTR {
+            gradients_of<tissue::ElasticLaw::saint_venant_kirchhoff>(k, i);
+        });
 }
 
 // ---- Forces and velocities
@@ -281,22 +285,20 @@ HWY_INLINE void velocities_of(const KernelView& k, std::int64_t i, Mask present,
     }
 }
 
-void velocities(const KernelView& k, std::int64_t begin, std::int64_t end) {
-    const auto lanes = static_cast<std::int64_t>(hn::Lanes(D()));
-    for (std::int64_t i = begin; i < end; i += lanes) {
-        if ((simd::bits_at(D(), k.present, i) | simd::bits_at(D(), k.ghost, i)) == 0) continue;
+void velocities(const KernelView& k, Groups groups) {
+    for_each_vector(groups, k.present, k.ghost, [&](std::int64_t i) HWY_ATTR {
         velocities_of(k, i, simd::mask_at(D(), k.present, i), simd::mask_at(D(), k.ghost, i));
-    }
+    });
 }
 
-void displacements(const KernelView& k, std::int64_t begin, std::int64_t end) {
-    const auto lanes = static_cast<std::int64_t>(hn::Lanes(D()));
+void displacements(const KernelView& k, Groups groups) {
     const Lanes dt = all(k.substep_s);
-    for (int r = 0; r < 3; ++r)
-        for (std::int64_t i = begin; i < end; i += lanes) {
+    for_each_vector(groups, k.present, k.present, [&](std::int64_t i) HWY_ATTR {
+        for (int r = 0; r < 3; ++r) {
             float* u = k.displacement_m[r] + i;
             store(load(u) + dt * load(k.velocity_m_per_s[r] + i), u);
         }
+    });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -310,14 +312,14 @@ HWY_EXPORT(gradients);
 HWY_EXPORT(velocities);
 HWY_EXPORT(displacements);
 
-void sweep_gradients(const KernelView& view, std::int64_t begin, std::int64_t end) {
-    HWY_DYNAMIC_DISPATCH(gradients)(view, begin, end);
+void sweep_gradients(const KernelView& view, Groups groups) {
+    HWY_DYNAMIC_DISPATCH(gradients)(view, groups);
 }
-void sweep_velocities(const KernelView& view, std::int64_t begin, std::int64_t end) {
-    HWY_DYNAMIC_DISPATCH(velocities)(view, begin, end);
+void sweep_velocities(const KernelView& view, Groups groups) {
+    HWY_DYNAMIC_DISPATCH(velocities)(view, groups);
 }
-void sweep_displacements(const KernelView& view, std::int64_t begin, std::int64_t end) {
-    HWY_DYNAMIC_DISPATCH(displacements)(view, begin, end);
+void sweep_displacements(const KernelView& view, Groups groups) {
+    HWY_DYNAMIC_DISPATCH(displacements)(view, groups);
 }
 
 }  // namespace calot::deformation

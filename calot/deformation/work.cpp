@@ -1,6 +1,7 @@
 #include "calot/deformation/work.h"
 
 #include "calot/deformation/integrate.h"
+#include "calot/deformation/kernel.h"
 #include "calot/deformation/topology.h"
 
 namespace calot::deformation {
@@ -15,6 +16,7 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
         field->assign(cells, 0.0f);
     for (auto& component : work.gradient) component.assign(cells, 0.0f);
     for (auto& component : work.moment_stress) component.assign(cells, 0.0f);
+    work.groups = make_groups(model, state);
     work.contact = make_contact_work(model);
     work.substeps = model.deformation.substeps;
     work.substep_s = static_cast<float>(model.tick_s / work.substeps);

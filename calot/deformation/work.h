@@ -48,6 +48,9 @@ struct Work {
     std::uint32_t search = 0;            ///< number of the last search
     Array<float> hexel_weight;           ///< [m^3][27] kernel of hexel centres towards the 3^3 phyxels about their own
 
+    /// First cells of groups of kGroupCells cells in a row that hold all phyxels and ghosts and do not overlap
+    /// (kernel.h)
+    std::vector<std::int32_t> groups;
     ContactWork contact;  ///< one tick's contact points
 
     int substeps = 1;

@@ -84,6 +84,15 @@ class BlockMarker {
     std::vector<Candidate> all_, undecided_;
 };
 
+/// Axes of the phyxel lattice, fastest first. The field is a sheet, and its kernels take runs of 16 phyxels: rows along
+/// the longest side have the longest runs (370 groups of 16 in the standard scene instead of 584 along the shortest),
+/// and the shortest side next keeps planes small.
+std::array<int, 3> long_rows(const Int3& size) {
+    std::array<int, 3> axes{0, 1, 2};
+    std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return size[a] > size[b]; });
+    return {axes[0], axes[2], axes[1]};
+}
+
 /// Wave speed of longitudinal waves [m/s], squared: (lambda + 2 mu) / rho.
 double wave_speed_squared(double mu, double lambda, double density) {
     return (lambda + 2.0 * mu) / density;
@@ -119,7 +128,7 @@ Model sample(const anatomy::Anatomy& anatomy, const SamplingParameters& paramete
     // One ring of empty phyxel cells on each side for ghosts.
     const Int3 cells = Int3(glm::ceil((box.high - box.low) / spacing - 1e-9)) + 2;
     const Vec3 corner = 0.5 * (box.low + box.high) - 0.5 * spacing * Vec3(cells);
-    model.phyxels = Lattice::make(corner + Vec3(0.5 * spacing), spacing, cells);
+    model.phyxels = Lattice::make(corner + Vec3(0.5 * spacing), spacing, cells, long_rows(cells));
     model.hexels = Lattice::make(corner + Vec3(0.5 * hexel), hexel, cells * m);
 
     model.hexel_material.assign(static_cast<std::size_t>(model.hexels.cells), kNoMaterial);
