@@ -31,31 +31,30 @@ void refresh_mirror(const tissue::Model& model, const tissue::State& state, Work
 }
 
 void move_ghosts(tissue::State& state, const Work& work) {
-    for (std::size_t r = 0; r < 3; ++r) {
-        Array<float>& u = state.displacement_m[r];
-        for (const Mirror& mirror : work.mirrors) {
+    for (const Mirror& mirror : work.mirrors) {
+        const auto ghost = static_cast<std::size_t>(mirror.ghost);
+        const float share = mirror.count > 0 ? 1.0f / static_cast<float>(mirror.count) : 0.0f;
+        for (std::size_t r = 0; r < 3; ++r) {
+            Array<float>& u = state.displacement_m[r];
             float sum = 0.0f;
             for (int k = 0; k < mirror.count; ++k)
                 sum += u[static_cast<std::size_t>(mirror.phyxel[static_cast<std::size_t>(k)])];
-            const float mean = mirror.count > 0 ? sum / static_cast<float>(mirror.count) : mirror.face_m[r];
-            u[static_cast<std::size_t>(mirror.ghost)] = 2.0f * mirror.face_m[r] - mean;
+            u[ghost] = mirror.count > 0 ? 2.0f * mirror.face_m[r] - share * sum : mirror.face_m[r];
         }
     }
 }
 
 void return_ghost_impulses(tissue::State& state, const Work& work, float decay) {
-    for (auto& v : state.velocity_m_per_s)
-        for (const Mirror& mirror : work.mirrors) {
-            float& impulse = v[static_cast<std::size_t>(mirror.ghost)];
-            if (mirror.count > 0) {
-                const float share = -decay * impulse / static_cast<float>(mirror.count);
-                for (int k = 0; k < mirror.count; ++k) {
-                    const auto p = static_cast<std::size_t>(mirror.phyxel[static_cast<std::size_t>(k)]);
-                    v[p] += share * work.inverse_mass_per_kg[p];
-                }
-            }
-            impulse = 0.0f;
+    for (const Mirror& mirror : work.mirrors) {
+        const auto ghost = static_cast<std::size_t>(mirror.ghost);
+        const float share = mirror.count > 0 ? -decay / static_cast<float>(mirror.count) : 0.0f;
+        for (int k = 0; k < mirror.count; ++k) {
+            const auto p = static_cast<std::size_t>(mirror.phyxel[static_cast<std::size_t>(k)]);
+            const float gain = share * work.inverse_mass_per_kg[p];
+            for (auto& v : state.velocity_m_per_s) v[p] += gain * v[ghost];
         }
+        for (auto& v : state.velocity_m_per_s) v[ghost] = 0.0f;
+    }
 }
 
 }  // namespace calot::deformation

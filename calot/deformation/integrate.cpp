@@ -39,15 +39,16 @@ std::int64_t first_bad_cell(const Model& model, const State& state) {
 }
 
 /// Infinities and NaN have all exponent bits set; as integers, so that the loop is wide.
-bool all_finite(const Model& model, const State& state) {
+bool all_finite(const State& state, const Work& work) {
     constexpr std::uint32_t kExponent = 0x7f800000u;
     std::uint32_t bad = 0;
     for (const auto& u : state.displacement_m)
-        for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
-            std::uint32_t bits;
-            std::memcpy(&bits, &u[static_cast<std::size_t>(p)], sizeof(bits));
-            bad |= (bits & kExponent) == kExponent ? 1u : 0u;
-        }
+        for (const std::int32_t group : work.groups)
+            for (std::int64_t k = 0; k < kGroupCells; ++k) {
+                std::uint32_t bits;
+                std::memcpy(&bits, &u[static_cast<std::size_t>(group + k)], sizeof(bits));
+                bad |= (bits & kExponent) == kExponent ? 1u : 0u;
+            }
     return bad == 0;
 }
 
@@ -105,6 +106,9 @@ void integrate(const Model& model, State& state, tissue::Exchange& exchange, Wor
     if (!state.status.ok) return;
     prepare_contacts(model, state, exchange, work);
     const KernelView view = KernelView::make(model, state, work);
+    // Ghosts have no stress; their gradients are wanted by the embedding alone, once a tick.
+    KernelView within_tick = view;
+    within_tick.ghost = view.present;
     for (int substep = 0; substep < work.substeps; ++substep) {
         // Forces read the neighbours' displacements and moment stresses, gradients the neighbours' displacements:
         // each sweep must end everywhere before the next begins.
@@ -113,10 +117,10 @@ void integrate(const Model& model, State& state, tissue::Exchange& exchange, Wor
         solve_contacts(model, state, work);
         run("deformation.displacements", sweep_displacements, view, work);
         move_ghosts(state, work);
-        run("deformation.gradients", sweep_gradients, view, work);
+        run("deformation.gradients", sweep_gradients, substep + 1 < work.substeps ? within_tick : view, work);
     }
     exchange.contact_force_N = work.contact.impulse_Ns / -model.tick_s;
-    if (!all_finite(model, state)) state.status = {false, "displacement_m", first_bad_cell(model, state), state.tick};
+    if (!all_finite(state, work)) state.status = {false, "displacement_m", first_bad_cell(model, state), state.tick};
 }
 
 double elastic_energy_J(const Model& model, const State& state, const Work& work) {
