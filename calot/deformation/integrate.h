@@ -1,5 +1,10 @@
 #pragma once
 // Meshfree elasticity in time: one tick = Work::substeps leapfrog steps (docs/physics.md section 2).
+//
+//   v' = exp(-gamma dt) (v + dt (f(u) / m + g m_tissue / m))      forces: reference.h, a vector at a time: kernel.h
+//   v' obeys the contacts                                         contact.h
+//   u' = u + dt v'                                                and ghosts follow: ghosts.h
+//   G, M from u'
 
 #include "calot/deformation/work.h"
 
@@ -23,5 +28,9 @@ void update_gradients(const tissue::Model& model, const tissue::State& state, Wo
 /// Elastic + hourglass energy [J] and kinetic energy [J].
 double elastic_energy_J(const tissue::Model& model, const tissue::State& state, const Work& work);
 double kinetic_energy_J(const tissue::Model& model, const tissue::State& state, const Work& work);
+
+/// Mass that moves beyond that of the tissue [kg]: floors, Model::phyxel_mass_scale and what the time step needs
+/// (stable_mass.h). It has inertia but no weight.
+double added_mass_kg(const Work& work);
 
 }  // namespace calot::deformation

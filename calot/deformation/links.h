@@ -12,8 +12,6 @@ namespace calot::deformation {
 /// appears in ratios.
 inline constexpr double kFaceWeight = 8.0;
 inline constexpr double kEdgeWeight = 1.0;
-/// Trace of the moment matrix of a phyxel with all 18 links, in units of s^2.
-inline constexpr double kFullTrace = 72.0;
 
 /// Calls visit(neighbour cell, step in cells from here to there, weight) for every live link of a phyxel.
 template <class Visit>

@@ -186,4 +186,12 @@ void refresh_all_phyxels(const Model& model, const State& state, Work& work) {
         if (state.phyxel_present.test(p)) store_mass(model, state, work, p);
 }
 
+double added_mass_kg(const Work& work) {
+    double total = 0.0;
+    for (std::size_t i = 0; i < work.inverse_mass_per_kg.size(); ++i)
+        if (work.inverse_mass_per_kg[i] > 0.0f)
+            total += static_cast<double>((1.0f - work.gravity_share[i]) / work.inverse_mass_per_kg[i]);
+    return total;
+}
+
 }  // namespace calot::deformation

@@ -10,9 +10,17 @@
 #include "calot/deformation/topology.h"
 #include "tests/deformation/bodies.h"
 
+// Sanitizers bring their own operator new; there, nothing is counted.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define CALOT_COUNTS_ALLOCATIONS
+#endif
+
 namespace {
 std::atomic<long> allocations{0};
+}
 
+#ifdef CALOT_COUNTS_ALLOCATIONS
+namespace {
 void* counted(std::size_t size, std::size_t alignment) {
     ++allocations;
     void* p = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
@@ -39,6 +47,7 @@ void operator delete(void* p, std::align_val_t) noexcept {
 void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
     std::free(p);
 }
+#endif
 
 namespace calot::deformation::test {
 
@@ -183,6 +192,9 @@ TEST(Motion, PhyxelsOwnTheHexelsOfTheirCells) {
         });
         const double expected = static_cast<double>(body.state.hexel_present.count()) * body.model.hexel_volume_m3();
         EXPECT_NEAR(volume, expected, 1e-12 * expected);
+        double moving = 0.0;
+        body.for_each_phyxel([&](std::int64_t p) { moving += body.mass_kg(p); });
+        EXPECT_NEAR(added_mass_kg(body.work), moving - mass, 1e-6 * mass);
         EXPECT_NEAR(mass, expected * fat.density_kg_per_m3, 1e-6 * mass);  // floats
     }
     // Whole bodies also have their whole volume in the stress.
@@ -243,7 +255,9 @@ TEST(Motion, AllocatesNothing) {
     for (int k = 0; k < 3; ++k) body.tick();
     EXPECT_EQ(allocations, before);
     EXPECT_GT(body.exchange.contact_force_N.z, 0.0);
+#ifdef CALOT_COUNTS_ALLOCATIONS
     EXPECT_GT(before, 0);
+#endif
 }
 
 TEST(Motion, SaysWhereAndWhenItBlewUp) {
