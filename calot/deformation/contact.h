@@ -49,7 +49,8 @@ struct ContactWork {
     std::array<std::array<float, kMaxContactPoints>, 3> velocity_m_per_s{};  ///< v_c
     Array<float> spread;                                                     ///< [phyxels.cells] zero between uses
     std::vector<std::int32_t> touched;                                       ///< cells of `spread` that are not
-    Vec3 impulse_Ns{0.0};                                                    ///< on the tissue since the tick began
+    bool started = false;  ///< a substep of this tick was solved: the next one starts from its impulses
+    Vec3 impulse_Ns{0.0};  ///< on the tissue since the tick began
 };
 
 /// Reserves everything.
