@@ -1,5 +1,7 @@
 #include "summary.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -56,6 +58,11 @@ std::string summary_json(const RunRecord& r) {
     Json stages;
     for (int k = 0; k < simulation::kStages; ++k) stages[simulation::kStageNames[k]] = r.stages_us[k].at(0.5);
     j["stages_us"] = stages;
+    // Stages that work only every few ticks show in their means, not in their medians.
+    Json means;
+    for (int k = 0; k < simulation::kStages; ++k)
+        means[simulation::kStageNames[k]] = r.stages_us[k].sum() / static_cast<double>(std::max<std::int64_t>(1, r.ticks));
+    j["stages_mean_us"] = means;
     j["video"] = r.video;
     Json stills = Json::array();
     for (const Still& still : r.stills) stills.push_back(still.file);
