@@ -25,11 +25,38 @@ Examples:
 
 Exit codes: 0 done, 2 bad input or usage, 130 interrupted, 1 anything else.)";
 
+/// CLI::Range lets nan through.
+CLI::Validator seconds_between(double low, double high) {
+    return CLI::Validator(
+        [=](const std::string& text) {
+            double value = 0.0;
+            if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
+            return fmt::format("'{}' is no number of seconds from {:g} to {:g}", text, low, high);
+        },
+        "");
+}
+
+/// An option that is one of several words; `values` are in the order of `words`.
+template <class T>
+void add_word(CLI::App& command, const char* option, T& target, const std::vector<std::string>& words,
+              const std::vector<T>& values, const char* help) {
+    command
+        .add_option_function<std::string>(
+            option,
+            [&target, words, values](const std::string& word) {
+                for (std::size_t k = 0; k < words.size(); ++k)
+                    if (words[k] == word) target = values[k];
+            },
+            help)
+        ->type_name("KIND ")
+        ->check(CLI::IsMember(words));
+}
+
 void add_scene_options(CLI::App& command, SceneChoice& choice) {
     command.add_option("scene", choice.path, "Scene file (TOML)")->required()->type_name("SCENE");
     command.add_option("--duration", choice.duration_s, "Simulated time, instead of the scene's run.duration_s")
         ->type_name("SECONDS")
-        ->check(CLI::Range(0.001, 3600.0));
+        ->check(seconds_between(0.001, 3600.0));
     command.add_option("--seed", choice.seed, "Another patient, instead of the scene's anatomy.seed")
         ->type_name("N")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9'000'000'000'000'000'000}));
@@ -39,18 +66,19 @@ void add_scene_options(CLI::App& command, SceneChoice& choice) {
 }
 
 void add_output_options(CLI::App& command, OutputChoice& output) {
-    command.add_option("--out", output.directory, "Where to write")->type_name("DIR");
-    command.add_option("--frames", output.frames, "Pictures: none, png (stills), video (stills and an MP4)")
-        ->type_name("KIND")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, FrameKind>{
-            {"none", FrameKind::none}, {"png", FrameKind::png}, {"video", FrameKind::video}}));
+    const auto not_empty = [](const std::string& text) {
+        return text.empty() ? std::string("'' cannot be an output directory") : std::string();
+    };
+    command.add_option("--out", output.directory, "Where to write")->type_name("DIR")->check(not_empty);
+    add_word<FrameKind>(command, "--frames", output.frames, {"none", "png", "video"},
+                        {FrameKind::none, FrameKind::png, FrameKind::video},
+                        "Pictures: none, png (stills), video (stills and an MP4)");
     command.add_option("--export-every", output.export_every_s, "Write the surface (VTK) so often; 0: never")
         ->type_name("SECONDS")
-        ->check(CLI::Range(0.0, 3600.0));
-    command.add_option("--progress", output.progress, "auto (a bar on a terminal, lines otherwise), plain or none")
-        ->type_name("KIND")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, ProgressKind>{
-            {"auto", ProgressKind::automatic}, {"plain", ProgressKind::plain}, {"none", ProgressKind::none}}));
+        ->check(seconds_between(0.0, 3600.0));
+    add_word<ProgressKind>(command, "--progress", output.progress, {"auto", "plain", "none"},
+                           {ProgressKind::automatic, ProgressKind::plain, ProgressKind::none},
+                           "auto (a bar on a terminal, lines otherwise), plain or none");
     command
         .add_option("--threads", output.threads, "Threads to compute with; 0: all cores. Results do not depend on it")
         ->type_name("N")
@@ -70,9 +98,11 @@ int run(int argc, char** argv) {
     add_scene_options(*simulate_command, simulate_options.scene);
     add_output_options(*simulate_command, simulate_options.output);
     simulate_command->footer(
-        "\nWithout --out it writes to out/NAME, NAME being that of the scene file: summary.json, timeline.csv, "
-        "report.html,\n"
-        "recording.calot, surface/*.vtp with surface.pvd (ParaView), frames/*.png, dissection.mp4.");
+        std::string(
+            "\nWithout --out it writes to out/NAME, NAME being that of the scene file: summary.json, timeline.csv,\n"
+            "report.html, recording.calot, surface/*.vtp with surface.pvd (ParaView), frames/*.png, "
+            "dissection.mp4.\n") +
+        kExamples);
     simulate_command->callback([&] { code = simulate(simulate_options); });
 
     InspectOptions inspect_options;
@@ -89,7 +119,7 @@ int run(int argc, char** argv) {
     replay_command->add_flag("--verify", replay_options.verify,
                              "Compare the state with the recording every second; exit code 1 at the first difference");
     add_output_options(*replay_command, replay_options.output);
-    replay_command->footer("\nWithout --out nothing is written.");
+    replay_command->footer(std::string("\nWithout --out nothing is written.\n") + kExamples);
     replay_command->callback([&] { code = replay(replay_options); });
 
     bool defaults = false;

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -17,7 +16,7 @@ namespace calot::scene {
 
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = 4u << 20;
+constexpr std::size_t kMaxFileBytes = 4u << 20;
 
 std::string read_text(const std::string& path, const Place& asked_by) {
     namespace fs = std::filesystem;
@@ -39,15 +38,16 @@ std::string read_text(const std::string& path, const Place& asked_by) {
                           : fmt::format("did you mean {}?", (folder / near).lexically_normal().string()));
     }
     if (fs::is_directory(status)) fail("this is a directory, not a scene file", "name a .toml file in it");
-    if (fs::is_regular_file(status) && fs::file_size(path, error) > kMaxFileBytes)
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) fail(fmt::format("cannot read the scene file ({})", std::strerror(errno)), "check its permissions");
+    std::string text(kMaxFileBytes + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (stream.bad()) fail("cannot read the scene file", "check its disk");
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > kMaxFileBytes)
         fail("this is too large for a scene file (more than 4 MB)",
              "scenes are short TOML files; meshes stay in files of their own");
-    std::ifstream stream(path, std::ios::binary);
-    std::ostringstream text;
-    if (stream) text << stream.rdbuf();
-    if (!stream || stream.bad())
-        fail(fmt::format("cannot read the scene file ({})", std::strerror(errno)), "check its permissions");
-    return text.str();
+    return text;
 }
 
 toml::table parse_toml(const std::string& text, const std::string& name) {
