@@ -29,6 +29,9 @@ struct SceneChoice {
 /// Throws InputError.
 scene::Scene load_scene(const SceneChoice& choice);
 
+/// scene::build; tells on the standard error what was mended in meshes, and draws where a refused one is at fault.
+simulation::Setup build_setup(const scene::Scene& scene);
+
 struct OutputChoice {
     std::string directory;  ///< empty: none
     FrameKind frames = FrameKind::png;

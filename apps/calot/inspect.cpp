@@ -187,7 +187,7 @@ void print_text(const Json& j) {
 }  // namespace
 
 int inspect(const InspectOptions& options) {
-    const simulation::Setup setup = scene::build(load_scene(options.scene));
+    const simulation::Setup setup = build_setup(load_scene(options.scene));
     const Json description = describe(setup);
     if (options.json)
         fmt::print("{}\n", description.dump(2, ' ', false, Json::error_handler_t::replace));

@@ -67,7 +67,7 @@ int replay(const ReplayOptions& options) {
 
     RunPlan plan;
     plan.scene = scene::parse(recording.scene_text, options.recording + " (its scene)", ".");
-    plan.setup = std::make_shared<simulation::Setup>(scene::build(plan.scene));
+    plan.setup = std::make_shared<simulation::Setup>(build_setup(plan.scene));
     plan.output = options.output;
     plan.ticks = static_cast<std::int64_t>(recording.inputs.size());
     plan.input = [&recording](std::int64_t tick, double) { return recording.inputs[static_cast<std::size_t>(tick)]; };

@@ -207,7 +207,8 @@ std::string details(const RunRecord& r, const RunPlan& plan) {
                                         r.tick_us.at(0.5) * 1e-3, r.tick_us.at(0.99) * 1e-3, r.threads, r.wall_s));
     for (int k = 0; k < simulation::kStages; ++k)
         run += row(fmt::format("· {}", simulation::kStageNames[k]),
-                   fmt::format("{:.1f} µs mean", r.stages_us[k].sum() / static_cast<double>(std::max<std::int64_t>(1, r.ticks))));
+                   fmt::format("{:.1f} µs mean",
+                               r.stages_us[k].sum() / static_cast<double>(std::max<std::int64_t>(1, r.ticks))));
     if (!r.renderer.empty()) run += row("drawn by", escaped(r.renderer));
     run += row("state hash", fmt::format("<code>{:016x}</code>", r.state_hash));
     run += "</table>";

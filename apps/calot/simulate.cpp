@@ -15,7 +15,7 @@ int simulate(const SimulateOptions& options) {
     if (plan.output.directory.empty())
         plan.output.directory =
             (std::filesystem::path("out") / std::filesystem::path(options.scene.path).stem()).string();
-    auto setup = std::make_shared<simulation::Setup>(scene::build(plan.scene));
+    auto setup = std::make_shared<simulation::Setup>(build_setup(plan.scene));
     plan.setup = setup;
     plan.ticks = std::max<std::int64_t>(1, std::llround(setup->duration_s / setup->model.tick_s));
     plan.input = [setup](std::int64_t, double time_s) { return setup->script.at(time_s); };

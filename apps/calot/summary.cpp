@@ -61,7 +61,8 @@ std::string summary_json(const RunRecord& r) {
     // Stages that work only every few ticks show in their means, not in their medians.
     Json means;
     for (int k = 0; k < simulation::kStages; ++k)
-        means[simulation::kStageNames[k]] = r.stages_us[k].sum() / static_cast<double>(std::max<std::int64_t>(1, r.ticks));
+        means[simulation::kStageNames[k]] =
+            r.stages_us[k].sum() / static_cast<double>(std::max<std::int64_t>(1, r.ticks));
     j["stages_mean_us"] = means;
     j["video"] = r.video;
     Json stills = Json::array();

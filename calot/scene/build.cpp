@@ -73,22 +73,7 @@ std::int64_t memory_bytes(std::int64_t hexel_cells, std::int64_t phyxel_cells) {
     return 64 * hexel_cells + 400 * phyxel_cells;
 }
 
-anatomy::Anatomy build_anatomy(const Scene& scene) {
-    switch (scene.kind) {
-        case AnatomyKind::block:
-            return anatomy::make_block(scene.block);
-        case AnatomyKind::calots_triangle: {
-            anatomy::TriangleParameters parameters = scene.triangle;
-            parameters.seed = scene.seed;
-            return anatomy::make_calots_triangle(parameters);
-        }
-        case AnatomyKind::meshes:
-            break;
-    }
-    throw InputError(scene.file, 0, 0, "meshes cannot be built yet");
-}
-
-simulation::Setup build(const Scene& scene) {
+simulation::Setup build(const Scene& scene, std::vector<anatomy::MeshReport>* reports) {
     check(scene);
     simulation::Setup setup;
     setup.name = scene.name;
@@ -97,7 +82,7 @@ simulation::Setup build(const Scene& scene) {
     setup.duration_s = scene.duration_s;
     setup.hook = scene.hook;
     setup.smoke = scene.smoke;
-    setup.anatomy = build_anatomy(scene);
+    setup.anatomy = build_anatomy(scene, reports);
     check_memory(scene, setup.anatomy);
 
     Problems problems;

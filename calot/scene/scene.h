@@ -10,6 +10,7 @@
 
 #include "calot/anatomy/block.h"
 #include "calot/anatomy/calots_triangle.h"
+#include "calot/anatomy/mesh_shape.h"
 #include "calot/effects/smoke.h"
 #include "calot/instruments/hook.h"
 #include "calot/simulation/setup.h"
@@ -116,11 +117,12 @@ void override_value(Scene& scene, const std::string& assignment);
 /// Checks what no single key can say (order of keyframes, overlap of bursts, ...). Part of load, parse and build.
 void check(const Scene& scene);
 
-/// The anatomy alone. Throws InputError (unreadable or unusable mesh, tissue that does not exist, ...).
-anatomy::Anatomy build_anatomy(const Scene& scene);
+/// The anatomy alone. Throws InputError (unreadable or unusable mesh, ...). `reports`: what was found in each mesh, and
+/// done about it; filled as far as it got, also when this throws.
+anatomy::Anatomy build_anatomy(const Scene& scene, std::vector<anatomy::MeshReport>* reports = nullptr);
 
 /// Everything a simulation starts from. Throws InputError, pointing into the scene file where it can.
-simulation::Setup build(const Scene& scene);
+simulation::Setup build(const Scene& scene, std::vector<anatomy::MeshReport>* reports = nullptr);
 
 /// Memory that hexels and phyxels of such lattices take in all [bytes], an upper estimate.
 std::int64_t memory_bytes(std::int64_t hexel_cells, std::int64_t phyxel_cells);

@@ -27,7 +27,7 @@ struct Outcome {
 /// The program while it runs.
 class Program {
   public:
-    explicit Program(const std::vector<std::string>& arguments) {
+    explicit Program(const std::vector<std::string>& arguments, const std::string& directory = ".") {
         int ends[2];
         if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
         posix_spawn_file_actions_t actions;
@@ -35,6 +35,7 @@ class Program {
         posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
         posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
         posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
+        posix_spawn_file_actions_addchdir_np(&actions, directory.c_str());
         std::vector<std::string> words{CALOT_PROGRAM};
         words.insert(words.end(), arguments.begin(), arguments.end());
         std::vector<char*> argv;
@@ -73,8 +74,9 @@ class Program {
     int pipe_ = -1;
 };
 
-inline Outcome run(const std::vector<std::string>& arguments) {
-    return Program(arguments).wait();
+/// `directory`: where the program works.
+inline Outcome run(const std::vector<std::string>& arguments, const std::string& directory = ".") {
+    return Program(arguments, directory).wait();
 }
 
 /// A directory of the test's own, gone afterwards.
