@@ -46,7 +46,7 @@ Settings settings_of(Quality quality) {
         case Quality::low:
             return {1.0, 0, 4};
         case Quality::medium:
-            return {1.0, 6, 2};
+            return {1.0, 6, 3};
         case Quality::high:
             return {1.35, 10, 2};
     }

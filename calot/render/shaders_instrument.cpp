@@ -135,7 +135,7 @@ void main() {
         light += u_light[k].w * aim * aim * 2.0 / (1.0 + d2 / (u_axis.w * u_axis.w));
     }
     vec3 to_spark = u_spark.xyz - a_place.xyz;
-    vec3 tint = mix(vec3(0.40, 0.41, 0.46), vec3(0.74, 0.74, 0.76), a_optics.y);   // smoke is bluish, steam white
+    vec3 tint = mix(vec3(0.34, 0.35, 0.40), vec3(0.62, 0.61, 0.62), a_optics.y);   // smoke is bluish, steam white
     v_light = tint * min(light, 3.0) + u_spark.w * vec3(1.0, 0.6, 0.3) * 2.0e-6 / (dot(to_spark, to_spark) + 4.0e-6);
     vec4 clip = u_view_projection * vec4(a_place.xyz, 1.0);
     // Stay at the particle's depth: only x and y move over the billboard.
@@ -159,16 +159,16 @@ void main() {
     if (r2 > 1.0) discard;
     float behind = axial_m(texture(u_depth, gl_FragCoord.xy * u_smoke_pixels.xy).r) - v_axial;
     vec4 swirl = texture(u_smooth, v_noise);
-    vec3 curled = v_noise + vec3(0.22 * (swirl.gb - 0.5), 0.0);
-    vec4 wisp = texture(u_smooth, 1.7 * curled + vec3(0.0, 0.0, 0.31));
+    vec3 curled = v_noise + vec3(0.30 * (swirl.gb - 0.5), 0.0);
+    vec4 wisp = texture(u_smooth, 1.5 * curled + vec3(0.0, 0.0, 0.31));
     float fall = max(0.0, exp(-3.0 * r2) - 0.0498) * 1.052;   // Gaussian, 0 at the rim
-    // Torn by noise: ridges along its level lines stay, what lies between thins out with age.
-    float ridge = 1.0 - 2.4 * abs(wisp.g - 0.5) - 1.0 * abs(wisp.r - 0.5);
-    float torn = mix(0.30, 0.62, clamp(v_optics.z * 0.8, 0.0, 1.0));
-    float density = fall * smoothstep(torn, 1.0, ridge + 0.35 * fall) * 2.6;
+    // Torn by noise: thin sheets along its level lines stay, what lies between thins out with age.
+    float sheet = 1.0 - 3.4 * abs(wisp.g - 0.5) - 0.8 * abs(wisp.a - 0.5);
+    float torn = mix(0.15, 0.45, clamp(v_optics.z * 0.8, 0.0, 1.0));
+    float density = fall * (0.10 + 2.6 * smoothstep(torn, 1.0, sheet));
     float soft = smoothstep(0.0, 0.004, behind) * smoothstep(0.012, 0.04, v_axial);
     float alpha = 1.0 - exp(-v_optics.x * density * soft);
-    vec3 colour = v_light * (0.75 + 0.5 * wisp.r);
+    vec3 colour = v_light * (0.55 + 0.55 * wisp.r + 0.35 * fall);
     o_colour = vec4(encode(colour) * alpha, alpha);
 }
 )";

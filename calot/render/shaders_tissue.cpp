@@ -56,11 +56,11 @@ float level_line(float value, float width) { return 1.0 - smoothstep(0.35 * widt
 Look fat_look(Samples s) {
     Look look;
     float septum = 1.0 - smoothstep(0.0, 0.34, s.border + 0.22 * (s.fine.r - 0.5));
-    vec3 deep = vec3(0.74, 0.40, 0.075), pale = vec3(0.93, 0.74, 0.36);
+    vec3 deep = vec3(0.82, 0.50, 0.13), pale = vec3(0.93, 0.75, 0.38);
     float tone = clamp(0.20 + 0.45 * s.pillow + 1.7 * (s.base.r - 0.5), 0.0, 1.0);
     look.albedo = mix(deep, pale, tone);
     look.albedo = mix(look.albedo, vec3(0.98, 0.86, 0.58), 0.45 * smoothstep(0.50, 0.80, s.fine.a));
-    look.albedo = mix(look.albedo, vec3(0.70, 0.30, 0.14), 0.58 * septum);
+    look.albedo = mix(look.albedo, vec3(0.78, 0.38, 0.21), 0.52 * septum);
     look.albedo = mix(look.albedo, vec3(0.80, 0.36, 0.24), 0.35 * smoothstep(0.55, 0.75, s.base.b));   // flushed patches
     look.albedo = mix(look.albedo, vec3(0.52, 0.06, 0.035), 0.70 * s.vein + 0.50 * s.vein_fine);
     look.pillow = 0.46;
@@ -95,7 +95,7 @@ Look artery_look(Samples s, float pulse) {
 Look gallbladder_look(Samples s) {
     Look look;
     float tone = clamp(0.5 + 1.5 * (s.base.r - 0.5), 0.0, 1.0);
-    look.albedo = mix(vec3(0.20, 0.28, 0.225), vec3(0.37, 0.45, 0.36), tone);
+    look.albedo = mix(vec3(0.22, 0.28, 0.22), vec3(0.40, 0.45, 0.35), tone);
     look.albedo = mix(look.albedo, vec3(0.62, 0.55, 0.33), 0.40 * smoothstep(0.45, 0.85, s.base.b));   // fat shining through
     look.albedo = mix(look.albedo, vec3(0.47, 0.09, 0.07), 0.8 * s.vein + 0.5 * s.vein_fine);
     look.pillow = 0.05;
@@ -108,7 +108,7 @@ Look gallbladder_look(Samples s) {
 Look liver_look(Samples s) {
     Look look;
     float mottle = clamp(0.5 + 0.7 * (s.base.r - 0.5) + 0.9 * (s.fine.r - 0.5), 0.0, 1.0);
-    look.albedo = mix(vec3(0.155, 0.028, 0.021), vec3(0.27, 0.066, 0.044), mottle);
+    look.albedo = mix(vec3(0.150, 0.034, 0.026), vec3(0.25, 0.070, 0.048), mottle);
     look.albedo = mix(look.albedo, vec3(0.36, 0.13, 0.085), 0.22 * (1.0 - smoothstep(0.0, 0.25, s.cells)));
     look.pillow = 0.03;
     look.bump = 0.06;
@@ -191,13 +191,14 @@ void main() {
 #endif
     // Vessels: long wandering lines with thin branches near them.
 #if QUALITY > 0
-    vec4 course = texture(u_smooth, (p.zxy + 5.0 * (s.base.rgb - 0.5)) / 71.0);
-    float off = course.g + 0.06 * (s.base.r - 0.5) - 0.5;
+    vec4 course = texture(u_smooth, (p.zxy + 3.0 * (s.base.gbr - 0.5)) / 47.0);
+    float off = course.g + 0.10 * (s.base.b - 0.5) - 0.5;
     float trunk = smoothstep(0.40, 0.62, course.b);
-    s.vein = level_line(off + 0.5, 0.004 + 0.008 * trunk) * smoothstep(0.05, 0.4, trunk);
-    float near = trunk * (1.0 - smoothstep(0.03, 0.16, abs(off)));
+    s.vein = level_line(off + 0.5, 0.007 + 0.012 * trunk) * smoothstep(0.05, 0.4, trunk);
+    float near = trunk * (1.0 - smoothstep(0.05, 0.24, abs(off)));
     s.vein_fine = level_line(s.base.g + 0.08 * (s.fine.r - 0.5), 0.020) * near * smoothstep(0.40, 0.55, s.base.b) +
                   0.5 * level_line(s.fine.g, 0.03) * near * smoothstep(0.50, 0.62, s.fine.b);
+    s.vein_fine = min(s.vein_fine, 1.0 - s.vein);
 #else
     s.vein = level_line(s.base.g, 0.012) * smoothstep(0.45, 0.65, s.base.b);
     s.vein_fine = 0.0;
@@ -230,9 +231,9 @@ void main() {
     float strand = level_line(s.fine.b, 0.05) * smoothstep(0.45, 0.6, s.base.a);
     vec3 raw = look.albedo * mix(vec3(0.95, 0.74, 0.52), vec3(0.92, 0.46, 0.34), smoothstep(0.42, 0.60, s.fine.r));
     raw = mix(raw, vec3(0.90, 0.80, 0.60), 0.16 * froth + 0.5 * strand);
-    look.albedo = mix(look.albedo, raw, bare);
+    look.albedo = mix(look.albedo, raw, bare * (0.15 + 0.85 * fatness));   // vessels are only stripped
     look.pillow *= 1.0 - 0.75 * bare;
-    look.bump += 0.14 * bare;
+    look.bump += 0.14 * bare * (0.3 + 0.7 * fatness);
     look.coat_rough = mix(look.coat_rough, 0.15, bare);
 
     vec3 pale = mix(vec3(0.70, 0.56, 0.36), vec3(0.84, 0.76, 0.60), clamp(0.5 + 2.0 * (s.fine.a - 0.5) + 1.2 * (s.base.a - 0.5), 0.0, 1.0));
@@ -269,8 +270,8 @@ void main() {
     m.wrap = vec3(0.42, 0.22, 0.12);
     // Thin at grazing view: light that went through comes back warm.
     float edge = 1.0 - clamp(dot(up, toward), 0.0, 1.0);
-    m.albedo *= mix(vec3(1.0), vec3(1.06, 0.86, 0.74), edge * edge);
-    m.occlusion = mix(0.72, 1.0, s.pillow * min(1.0, 2.4 * look.pillow) + 1.0 - min(1.0, 2.4 * look.pillow));
+    m.albedo *= mix(vec3(1.0), vec3(1.04, 0.91, 0.82), edge * edge);
+    m.occlusion = mix(0.80, 1.0, s.pillow * min(1.0, 2.4 * look.pillow) + 1.0 - min(1.0, 2.4 * look.pillow));
 #if QUALITY > 0
     m.occlusion *= texture(u_occlusion, gl_FragCoord.xy * u_pixels.zw).r;
 #endif

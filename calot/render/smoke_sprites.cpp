@@ -9,8 +9,12 @@ namespace {
 
 /// Half a billboard's edge, in standard deviations of the puff: 95 % of a Gaussian seen from the front lies within.
 constexpr float kReachInRadii = 2.45f;
+/// Share of the puffs' optical depth that is drawn: all of it would hide the field as a wall. Droplets scatter forward,
+/// so that much of what they take from the straight beam arrives all the same; and a scope sees through thin gaps that
+/// puffs are too coarse to have. Chosen by eye.
+constexpr float kDrawnShare = 0.3f;
 constexpr float kLeastOpticalDepth = 0.004f;
-constexpr float kMostOpticalDepth = 3.0f;
+constexpr float kMostOpticalDepth = 1.0f;
 
 }  // namespace
 
@@ -27,7 +31,7 @@ void make_sprites(const View& view, std::vector<SmokeSprite>& sprites) {
         const effects::OpticalDepth depth = effects::optical_depth(particle);
         const float sum = depth.steam + depth.smoke;
         if (sum < kLeastOpticalDepth) continue;
-        sprite.optical_depth = std::min(kMostOpticalDepth, sum);
+        sprite.optical_depth = std::min(kMostOpticalDepth, kDrawnShare * sum);
         sprite.steam_share = depth.steam / sum;
         sprite.age_s = particle.age_s;
         sprite.seed = static_cast<float>(particle.seed % 65521u) / 65521.0f;
