@@ -1,6 +1,8 @@
 #include "report.h"
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -69,16 +71,17 @@ std::string opening(const RunRecord& r, const RunPlan& plan) {
     return out;
 }
 
-std::string pictures(const RunRecord& r, const std::string& directory) {
-    std::string out;
-    if (!r.video.empty()) {
-        const std::string poster =
-            r.stills.empty() ? "" : embedded_png(directory + "/" + r.stills[r.stills.size() / 2].file);
-        out += fmt::format("<video class=\"hero\" src=\"{}\" poster=\"{}\" controls loop muted playsinline></video>\n",
-                           r.video, poster);
-    }
-    if (r.stills.empty()) return out;
-    out += "<h2>What the laparoscope saw</h2>\n<div class=\"stills\">\n";
+std::string video(const RunRecord& r, const std::string& directory) {
+    if (r.video.empty()) return "";
+    const std::string poster =
+        r.stills.empty() ? "" : embedded_png(directory + "/" + r.stills[r.stills.size() / 2].file);
+    return fmt::format("<video class=\"hero\" src=\"{}\" poster=\"{}\" controls loop muted playsinline></video>\n",
+                       r.video, poster);
+}
+
+std::string stills(const RunRecord& r, const std::string& directory) {
+    if (r.stills.empty()) return "";
+    std::string out = "<h2>What the laparoscope saw</h2>\n<div class=\"stills\">\n";
     for (const Still& still : r.stills)
         out += fmt::format("<figure><img alt=\"at {:.2f} s\" src=\"{}\"><figcaption>{:.2f} s</figcaption></figure>\n",
                            still.time_s, embedded_png(directory + "/" + still.file), still.time_s);
@@ -91,8 +94,8 @@ std::string key_figures(const RunRecord& r) {
     out += figure(fmt::format("{:.0f} °C", celsius_from_kelvin(r.max_temperature_K)), "hottest tissue");
     out += figure(fmt::format("{:.2g} N", r.force_N.max()), "greatest force on the hook");
     out += figure(fmt::format("{:.3g} J", r.last.energy_J.delivered), "delivered by the generator");
-    out += figure(r.injuries.empty() ? "<span class=\"good\">none</span>"
-                                     : fmt::format("<span class=\"bad\">{}</span>", r.injuries.size()),
+    out += figure(r.injuries.empty() ? "<em class=\"good\">none</em>"
+                                     : fmt::format("<em class=\"bad\">{}</em>", r.injuries.size()),
                   "structures injured");
     out += figure(fmt::format("{:.3g} ms", r.tick_us.at(0.5) * 1e-3), "to compute a tick of 1 ms (median)");
     return out + "</div>\n";
@@ -194,6 +197,23 @@ std::string energy(const RunRecord& r) {
                      "J");
 }
 
+/// "duct_length_mm" 28.69 -> "duct length", "28.7 mm"
+std::string fact_row(std::string name, double value) {
+    static const std::map<std::string, std::string> units{{"_mm", "mm"}, {"_deg", "°"}, {"_ml", "ml"}};
+    std::string text = fmt::format("{:.3g}", value);
+    bool has_unit = false;
+    for (const auto& [ending, unit] : units)
+        if (!has_unit && name.size() > ending.size() &&
+            name.compare(name.size() - ending.size(), ending.size(), ending) == 0) {
+            name.resize(name.size() - ending.size());
+            text += " " + unit;
+            has_unit = true;
+        }
+    if (!has_unit && (value == 0.0 || value == 1.0)) text = value == 1.0 ? "yes" : "no";
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return row(name, text);
+}
+
 std::string details(const RunRecord& r, const RunPlan& plan) {
     std::string run = "<table>";
     run += row("tissue", fmt::format("{} hexels of {:g} mm, {} phyxels", grouped(r.hexels_initial),
@@ -214,7 +234,7 @@ std::string details(const RunRecord& r, const RunPlan& plan) {
     run += "</table>";
     std::string patient = "<table>" + row("seed", fmt::format("{}", r.seed));
     for (const auto& [name, value] : plan.setup->anatomy.facts)
-        if (name != "seed") patient += row(name, fmt::format("{:.3g}", value));
+        if (name != "seed") patient += fact_row(name, value);
     patient += "</table>";
     return "<div class=\"columns\"><section><h2>The run</h2>" + run + "</section><section><h2>The patient</h2>" +
            patient + "</section></div>\n";
@@ -254,12 +274,13 @@ std::string report_html(const RunRecord& record, const RunPlan& plan, const std:
     out += fmt::format("<title>{} · Calot</title>\n<style>{}</style></head>\n<body><main>\n", escaped(record.scene),
                        kReportStyle);
     out += opening(record, plan);
-    out += pictures(record, directory);
+    out += video(record, directory);
     out += key_figures(record);
     out += injuries(record);
+    out += kAbout;
+    out += stills(record, directory);
     out += plots(record);
     out += energy(record);
-    out += kAbout;
     out += details(record, plan);
     out += files(record);
     out += fmt::format("<footer>Calot {} · scene “{}”, seed {} · {} ticks</footer>\n</main></body></html>\n",

@@ -16,24 +16,25 @@ h2{font:600 22px/1.2 Georgia,"Times New Roman",serif;margin:44px 0 14px}
 p{max-width:74ch;margin:0 0 12px}.lead{font-size:18px;color:var(--soft);margin-bottom:24px}
 a{color:var(--blue)}code{font:14px ui-monospace,Menlo,Consolas,monospace;overflow-wrap:anywhere}
 .hero{width:100%;border-radius:14px;background:#000;display:block;max-height:74vh;object-fit:contain}
-.stills{display:grid;grid-template-columns:repeat(auto-fill,minmax(250px,1fr));gap:14px}
+.stills{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,260px),1fr));gap:14px}
 .stills figure{margin:0}.stills img{width:100%;border-radius:10px;display:block;background:#000}
 .stills figcaption{color:var(--soft);font-size:14px;padding:4px 2px}
 .figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(170px,1fr));gap:12px;margin:24px 0}
 .figures div{background:var(--card);border:1px solid var(--line);border-radius:12px;padding:14px 16px}
-.figures b{display:block;font:600 25px/1.2 Georgia,serif}.figures span{color:var(--soft);font-size:14px}
+.figures em{font-style:normal}.figures b{display:block;font:600 25px/1.2 Georgia,serif}.figures span{color:var(--soft);font-size:14px}
 .plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,470px),1fr));gap:14px}
 .plot{margin:0;background:var(--card);border:1px solid var(--line);border-radius:12px;padding:12px 14px 4px}
 .plot figcaption{font-weight:600}.plot figcaption span{color:var(--soft);font-weight:400;margin-right:10px}
 .plot figcaption i{font-style:normal;font-weight:400;font-size:14px;margin-left:10px}
-.plot figcaption i::before,.legend li::before{content:"";display:inline-block;width:11px;height:11px;border-radius:3px;background:var(--c);margin-right:6px}
+.plot figcaption i::before,.legend li::before{content:"";display:inline-block;width:11px;height:11px;border-radius:3px;background:var(--c);margin-right:6px;flex:none}
 svg{display:block;width:100%;height:auto}svg text{fill:var(--soft);font:12px system-ui,sans-serif}
 svg .y,svg .m{text-anchor:end}svg .x{text-anchor:middle}svg path{fill:none;stroke-width:1.7;stroke-linejoin:round}
 .grid{stroke:var(--line)}.mark{stroke:var(--soft);stroke-dasharray:3 4}.pedal{fill:var(--shade)}
 .stack{height:36px;border-radius:8px;overflow:hidden}
-.legend{list-style:none;display:grid;grid-template-columns:repeat(auto-fill,minmax(260px,1fr));gap:4px 24px;padding:0;margin:14px 0}
-.legend b{float:right;font-weight:600;margin-left:8px}.legend span{float:right;color:var(--soft);width:60px;text-align:right;order:2}
-table{border-collapse:collapse;width:100%;max-width:760px}td,th{text-align:left;padding:6px 14px 6px 0;border-bottom:1px solid var(--line);vertical-align:top}
+.legend{list-style:none;display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,340px),1fr));gap:6px 36px;padding:0;margin:16px 0}
+.legend li{display:flex;align-items:baseline;gap:10px}.legend b{margin-left:auto;font-weight:600;white-space:nowrap}
+.legend span{color:var(--soft);min-width:52px;text-align:right}
+table{border-collapse:collapse;width:100%;max-width:760px}th{white-space:nowrap}td,th{text-align:left;padding:6px 14px 6px 0;border-bottom:1px solid var(--line);vertical-align:top}
 td+td{font-variant-numeric:tabular-nums}th{color:var(--soft);font-weight:500}
 .good{color:var(--green)}.bad{color:var(--red)}.note{border-left:4px solid var(--warm);padding:8px 14px;background:var(--card);border-radius:0 8px 8px 0}
 .columns{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,420px),1fr));gap:0 40px}
