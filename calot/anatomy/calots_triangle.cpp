@@ -19,15 +19,14 @@ constexpr double mm = kMillimetre;
 /// Tissue reaches so far into rigid organs, so that no gap shows where they meet: half a standard hexel.
 constexpr double kOverlap = 0.3 * mm;
 
-/// The deformable part of a solid: what lies outside the rigid organs.
+/// The deformable part of a solid: what lies outside the rigid organs, in the box that it fills.
 ShapePtr outside_of(const ShapePtr& solid, const std::vector<Organ>& organs) {
-    return make_shape(
-        [solid, organs](const Vec3& p) {
-            double distance = solid->distance_m(p);
-            for (const Organ& organ : organs) distance = std::max(distance, -kOverlap - organ.shape->distance_m(p));
-            return distance;
-        },
-        solid->bounds_m());
+    auto distance_m = [solid, organs](const Vec3& p) {
+        double distance = solid->distance_m(p);
+        for (const Organ& organ : organs) distance = std::max(distance, -kOverlap - organ.shape->distance_m(p));
+        return distance;
+    };
+    return make_shape(distance_m, tight_bounds_m(*make_shape(distance_m, solid->bounds_m()), 0.3 * mm));
 }
 
 const Organ& organ_named(const Anatomy& anatomy, const std::string& name) {

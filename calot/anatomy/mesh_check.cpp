@@ -321,7 +321,7 @@ void count_self_intersections(const MeshTree& tree, MeshReport& report) {
                 if (j <= i || share_corner(t, mesh.triangles[static_cast<std::size_t>(j)])) return true;
                 const std::array<Vec3, 3> b = corners(mesh.triangles[static_cast<std::size_t>(j)]);
                 mine.complete = ++tests <= kMostTests;
-                if (triangles_cross(a, b) && ++mine.count <= 64) mine.places.push_back((a[0] + a[1] + a[2]) / 3.0);
+                if (triangles_cross(a, b) && ++mine.count <= 256) mine.places.push_back((a[0] + a[1] + a[2]) / 3.0);
                 return mine.complete;
             });
         }

@@ -40,7 +40,33 @@ class UnionShape final : public Shape {
     Box bounds_;
 };
 
+/// Grows `tight` by what of the solid may lie in `box`; boxes that can add nothing are not looked into.
+void grow_bounds(const Shape& shape, const Box& box, double resolution_m, Box& tight) {
+    if (glm::all(glm::greaterThanEqual(box.low, tight.low)) && glm::all(glm::lessThanEqual(box.high, tight.high)))
+        return;
+    const Vec3 extent = box.high - box.low, centre = 0.5 * (box.low + box.high);
+    if (shape.distance_m(centre) > kDistanceSlack * 0.5 * glm::length(extent)) return;
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    if (longest <= resolution_m) {
+        tight = Box{glm::min(tight.low, box.low), glm::max(tight.high, box.high)};
+        return;
+    }
+    const int axis = longest == extent.x ? 0 : longest == extent.y ? 1 : 2;
+    Box half = box;
+    half.high[axis] = centre[axis];
+    grow_bounds(shape, half, resolution_m, tight);
+    half = box;
+    half.low[axis] = centre[axis];
+    grow_bounds(shape, half, resolution_m, tight);
+}
+
 }  // namespace
+
+Box tight_bounds_m(const Shape& shape, double resolution_m) {
+    Box tight{Vec3(1e9), Vec3(-1e9)};
+    grow_bounds(shape, shape.bounds_m(), resolution_m, tight);
+    return tight;
+}
 
 ShapePtr make_shape(std::function<double(const Vec3&)> distance_m, const Box& bounds_m) {
     return std::make_shared<FunctionShape>(std::move(distance_m), bounds_m);

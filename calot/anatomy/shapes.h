@@ -21,6 +21,9 @@ ShapePtr make_union(std::vector<ShapePtr> shapes, double blend_m = 0.0);
 /// The part of `shape` inside a box.
 ShapePtr make_clipped(ShapePtr shape, const Box& box_m);
 
+/// The box that the solid really fills, to within about `resolution_m` outwards: bounds_m() may be much larger.
+Box tight_bounds_m(const Shape& shape, double resolution_m);
+
 double box_distance_m(const Box& box_m, const Vec3& position_m);
 
 /// Minimum with a rounded seam, polynomial (Quilez, "smooth minimum"): a convex mix of its arguments' slopes, so that

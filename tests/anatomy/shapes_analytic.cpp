@@ -69,6 +69,18 @@ TEST(Union, BlendStaysABound) {
     EXPECT_LT(soft->distance_m(Vec3(0, 0.0055, 0)), sharp->distance_m(Vec3(0, 0.0055, 0)));  // the seam is filled
 }
 
+TEST(Bounds, AreTight) {
+    const ShapePtr ball = make_sphere(Vec3(0.01, 0.0, 0.0), 0.005);
+    const Box wide{Vec3(-0.1), Vec3(0.1)};
+    const Box tight = tight_bounds_m(*make_shape([&](const Vec3& p) { return ball->distance_m(p); }, wide), 1e-4);
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_LE(tight.low[axis], ball->bounds_m().low[axis]);
+        EXPECT_GE(tight.high[axis], ball->bounds_m().high[axis]);
+        EXPECT_NEAR(tight.low[axis], ball->bounds_m().low[axis], 3e-4);  // resolution, and the slack about a piece
+        EXPECT_NEAR(tight.high[axis], ball->bounds_m().high[axis], 3e-4);
+    }
+}
+
 TEST(Cached, ReproducesASphere) {
     const double radius = 0.01, spacing = 0.5e-3;
     const ShapePtr cached = make_cached(make_sphere(Vec3(0.001, 0.002, 0.003), radius), spacing);
