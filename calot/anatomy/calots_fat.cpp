@@ -23,7 +23,7 @@ constexpr double mm = kMillimetre;
 using Vec2 = glm::dvec2;
 
 /// How much wider a ridge gets per depth behind its axis: the fat thins out towards what it lies on.
-constexpr double kSkirt = 0.4;
+constexpr double kSkirt = 0.34;
 
 class Ridge {
   public:
@@ -66,10 +66,18 @@ class Ridge {
     Box bounds_;
 };
 
+/// An organ that the fat clings to, and how wide the fillet between them is.
+struct Footing {
+    ShapePtr organ;
+    double blend_m;
+};
+
 class FatShape final : public Shape {
   public:
-    FatShape(std::vector<Ridge> ridges, double lobule_size_m, double lobule_height_m, std::uint32_t seed)
+    FatShape(std::vector<Ridge> ridges, std::vector<Footing> footings, double lobule_size_m, double lobule_height_m,
+             std::uint32_t seed)
         : ridges_(std::move(ridges)),
+          footings_(std::move(footings)),
           lobule_size_(lobule_size_m),
           lobule_height_(lobule_height_m),
           seed_(seed),
@@ -78,7 +86,7 @@ class FatShape final : public Shape {
             bounds_.low = glm::min(bounds_.low, ridge.bounds_m().low);
             bounds_.high = glm::max(bounds_.high, ridge.bounds_m().high);
         }
-        const double margin = kBlend / 2 + kFoldHeight + lobule_height_;
+        const double margin = kBlend + kFoldHeight + lobule_height_;
         bounds_.low -= Vec3(margin, margin, 0.0);
         bounds_.high += margin;
     }
@@ -87,8 +95,14 @@ class FatShape final : public Shape {
     double distance_m(const Vec3& p) const override {
         double smooth = 1e9;
         for (const Ridge& ridge : ridges_) smooth = smooth_min(smooth, ridge.distance_m(p), kBlend);
+        // It runs out softly on what it lies on, instead of standing on it like a block.
+        const double body = smooth;
+        for (const Footing& f : footings_)
+            smooth = std::min(smooth, smooth_min(body, f.organ->distance_m(p) + kFootingDepth, f.blend_m));
         // Lobules and folds grow outwards from the smooth body and fade away from its surface.
-        const double fade = 1.0 - std::min(std::abs(smooth) / kBand, 1.0);
+        // They go flat where the feet run out.
+        const double rim = std::clamp(1.2 - (body - smooth) / kRim, 0.0, 1.0);
+        const double fade = rim * (1.0 - std::min(std::abs(smooth) / kBand, 1.0));
         double grown = smooth;
         if (fade > 0.0) {
             const double lobules =
@@ -96,16 +110,25 @@ class FatShape final : public Shape {
             const double folds = 0.5 + 0.5 * gradient_noise(p / kFoldSize, seed_ + 2);
             grown -= std::min(2.0 * fade, 1.0) * (lobule_height_ * lobules + kFoldHeight * folds);
         }
-        return std::max(grown / kSlope, box_distance_m(bounds_, p));
+        // Far away, the smooth body less all that may grow on it is the better bound.
+        const double bound = std::max(grown / kSlope, (smooth - 1.22 * lobule_height_ - kFoldHeight) / kRidgeSlope);
+        return std::max(bound, box_distance_m(bounds_, p));
     }
 
   private:
     static constexpr double kBlend = 7 * mm;  ///< width of the seams between ridges
     static constexpr double kFoldHeight = 1.6 * mm, kFoldSize = 13 * mm;
-    static constexpr double kBand = 6 * mm;  ///< lobules reach so far from the smooth surface
-    static constexpr double kSlope = 1.6;    ///< of noise and ridges; the distance is divided by it
+    static constexpr double kBand = 6 * mm;      ///< lobules reach so far from the smooth surface
+    static constexpr double kRim = 3 * mm;       ///< the same for feet, in what they add
+    static constexpr double kRidgeSlope = 1.15;  ///< of ridges and feet
+    static constexpr double kSlope = 2.2;        ///< of the grown surface; the distance is divided by it
+
+    /// So far inside the organs the fat's feet end: beyond the depth to which organs are cut out of it, so that no film
+    /// of fat covers an organ away from the fillet.
+    static constexpr double kFootingDepth = 1.2 * mm;
 
     std::vector<Ridge> ridges_;
+    std::vector<Footing> footings_;
     double lobule_size_, lobule_height_;
     std::uint32_t seed_;
     Box bounds_;
@@ -119,7 +142,7 @@ std::vector<TubePoint> thickened(std::vector<TubePoint> points, double by_m) {
 
 }  // namespace
 
-ShapePtr make_fat(const TriangleLayout& t) {
+ShapePtr make_fat(const TriangleLayout& t, const std::vector<Organ>& organs) {
     const double cover = *t.patient.fat_thickness_m, back = t.backdrop_z_m - 5.0 * mm;
     const Vec3 neck = t.neck_m, j = t.junction_m, top = t.liver_point_m;
     auto at_mm = [](double x, double y, double z) { return Vec3(x, y, z) * mm; };
@@ -137,19 +160,25 @@ ShapePtr make_fat(const TriangleLayout& t) {
         9);
     // Along the common duct.
     add(smooth_curve({{Vec3(j.x + 1 * mm, top.y - 3 * mm, j.z - 2 * mm), 5.0 * mm},
-                      {j + at_mm(2.0, 3, -0.5), 5.2 * mm},
+                      {j + at_mm(2.0, 3, -0.5), 4.6 * mm},
                       {j + at_mm(1.5, -9, -2), 5.0 * mm}},
                      4),
         8);
     // The hem that hangs below the duct.
     const Vec3 hem = 0.5 * (neck + j) + Vec3(0, varied(t, 31, -9.0, -7.0) * mm, -2.5 * mm);
     add(smooth_curve({{neck + at_mm(-3, -7, -2), 3.5 * mm},
-                      {hem, varied(t, 32, 4.0, 5.2) * mm},
+                      {hem, varied(t, 32, 2.6, 4.2) * mm},
                       {j + at_mm(1, -8, -3), 4.2 * mm}},
                      4),
         8);
-    return std::make_shared<FatShape>(std::move(ridges), *t.patient.lobule_size_m, *t.patient.lobule_height_m,
-                                      static_cast<std::uint32_t>(t.patient.seed * 16 + 5));
+    std::vector<Footing> footings;
+    for (const Organ& organ : organs) {
+        if (organ.name == "peritoneum") footings.push_back({organ.shape, 8 * mm});
+        if (organ.name == "liver") footings.push_back({organ.shape, 7 * mm});
+        if (organ.name == "gallbladder") footings.push_back({organ.shape, 6 * mm});
+    }
+    return std::make_shared<FatShape>(std::move(ridges), std::move(footings), *t.patient.lobule_size_m,
+                                      *t.patient.lobule_height_m, static_cast<std::uint32_t>(t.patient.seed * 16 + 5));
 }
 
 }  // namespace calot::anatomy

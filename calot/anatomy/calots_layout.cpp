@@ -179,7 +179,7 @@ TriangleLayout lay_out(const TriangleParameters& drawn) {
     t.liver_point_m = at_mm(0.0, 0.5 * *drawn.artery_gap_m / mm + varied(t, 11, 11.0, 13.5), -8.0);
     const double tilt = varied(t, 12, -0.08, 0.10);
     t.liver_normal = glm::normalize(Vec3(tilt, -0.72, 0.66));
-    t.backdrop_z_m = varied(t, 13, -15.0, -13.5) * mm;
+    t.backdrop_z_m = varied(t, 13, -14.5, -13.0) * mm;
     return t;
 }
 

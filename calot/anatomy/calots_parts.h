@@ -25,8 +25,8 @@ TriangleLayout lay_out(const TriangleParameters& drawn);
 /// The rigid organs of a patient, exact (not cached).
 std::vector<Organ> make_organs(const TriangleLayout& layout);
 
-/// The fat with its lobules, before the organs are cut out of it.
-ShapePtr make_fat(const TriangleLayout& layout);
+/// The fat with its lobules, clinging to the organs; they are yet to be cut out of it.
+ShapePtr make_fat(const TriangleLayout& layout, const std::vector<Organ>& organs);
 
 /// A fixed number for this patient in [low, high], by the name of its use.
 double varied(const TriangleLayout& layout, std::uint64_t use, double low, double high);

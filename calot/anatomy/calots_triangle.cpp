@@ -19,14 +19,15 @@ constexpr double mm = kMillimetre;
 /// Tissue reaches so far into rigid organs, so that no gap shows where they meet: half a standard hexel.
 constexpr double kOverlap = 0.3 * mm;
 
-/// The deformable part of a solid: what lies outside the rigid organs, in the box that it fills.
+/// The deformable part of a solid: what lies outside the rigid organs.
 ShapePtr outside_of(const ShapePtr& solid, const std::vector<Organ>& organs) {
-    auto distance_m = [solid, organs](const Vec3& p) {
-        double distance = solid->distance_m(p);
-        for (const Organ& organ : organs) distance = std::max(distance, -kOverlap - organ.shape->distance_m(p));
-        return distance;
-    };
-    return make_shape(distance_m, tight_bounds_m(*make_shape(distance_m, solid->bounds_m()), 0.3 * mm));
+    return make_shape(
+        [solid, organs](const Vec3& p) {
+            double distance = solid->distance_m(p);
+            for (const Organ& organ : organs) distance = std::max(distance, -kOverlap - organ.shape->distance_m(p));
+            return distance;
+        },
+        solid->bounds_m());
 }
 
 const Organ& organ_named(const Anatomy& anatomy, const std::string& name) {
@@ -125,16 +126,21 @@ Anatomy make_calots_triangle(const TriangleParameters& parameters) {
     anatomy.organs = make_organs(layout);
     // Large flat organs bear a coarser grid than thin tubes.
     for (Organ& organ : anatomy.organs) {
-        const bool thin = organ.name == "common_duct" || organ.name == "hepatic_artery";
-        organ.shape = make_cached(organ.shape, thin ? 0.8 * mm : organ.name == "gallbladder" ? 1.0 * mm : 1.5 * mm);
+        const std::string& name = organ.name;
+        const double spacing = name == "common_duct" || name == "hepatic_artery" ? 0.8 * mm
+                               : name == "gallbladder"                           ? 1.0 * mm
+                               : name == "liver" || name == "duodenum"           ? 2.0 * mm
+                                                                                 : 1.5 * mm;
+        organ.shape = make_cached(organ.shape, spacing);
     }
     std::vector<ShapePtr> arteries;
     for (const auto& artery : layout.arteries) arteries.push_back(make_tube(artery));
-    anatomy.tissues = {{"fat", "fat", outside_of(make_fat(layout), anatomy.organs)},
+    anatomy.tissues = {{"fat", "fat", outside_of(make_fat(layout, anatomy.organs), anatomy.organs)},
                        {"cystic_duct", "cystic_duct", outside_of(make_tube(layout.duct), anatomy.organs)},
                        {"cystic_artery", "cystic_artery",
                         outside_of(arteries.size() == 1 ? arteries[0] : make_union(arteries), anatomy.organs)}};
-    anatomy.field = anatomy.tissues[0].shape->bounds_m();
+    // Duct and artery lie within the fat as long as they are free. A small field makes small lattices.
+    anatomy.field = tight_bounds_m(*anatomy.tissues[0].shape, 0.6 * mm);
     add_landmarks_and_facts(anatomy, layout);
     return anatomy;
 }

@@ -53,7 +53,7 @@ const std::vector<TriangleQuantity>& triangle_quantities();
 TriangleParameters draw_triangle(const TriangleParameters& parameters);
 
 /// Tissues: "fat", "cystic_duct", "cystic_artery". Organs: "liver", "gallbladder", "common_duct", "hepatic_artery",
-/// "peritoneum", "duodenum". Landmarks: "triangle", "fat_window", "duct_start", "duct_middle", "duct_end",
+/// "peritoneum", "omentum", "duodenum". Landmarks: "triangle", "fat_window", "duct_start", "duct_middle", "duct_end",
 /// "artery_start", "artery_middle", "artery_end", "gallbladder_neck", "common_duct", "front_of_duct",
 /// "front_of_artery", "between", "trocar", "camera", "camera_target". Facts: all quantities, measured on the finished
 /// solids ("duct_length_mm", "fat_over_duct_mm", "fat_over_duct_least_mm", ...), "artery_anterior", "double_artery".

@@ -40,15 +40,15 @@ class UnionShape final : public Shape {
     Box bounds_;
 };
 
-/// Grows `tight` by what of the solid may lie in `box`; boxes that can add nothing are not looked into.
+/// Grows `tight` by what of the solid lies in `box`; boxes that can add nothing are not looked into.
 void grow_bounds(const Shape& shape, const Box& box, double resolution_m, Box& tight) {
     if (glm::all(glm::greaterThanEqual(box.low, tight.low)) && glm::all(glm::lessThanEqual(box.high, tight.high)))
         return;
     const Vec3 extent = box.high - box.low, centre = 0.5 * (box.low + box.high);
-    if (shape.distance_m(centre) > kDistanceSlack * 0.5 * glm::length(extent)) return;
-    const double longest = std::max({extent.x, extent.y, extent.z});
+    const double longest = std::max({extent.x, extent.y, extent.z}), distance = shape.distance_m(centre);
+    if (distance > kDistanceSlack * 0.5 * glm::length(extent)) return;
     if (longest <= resolution_m) {
-        tight = Box{glm::min(tight.low, box.low), glm::max(tight.high, box.high)};
+        if (distance < 0.0) tight = Box{glm::min(tight.low, box.low), glm::max(tight.high, box.high)};
         return;
     }
     const int axis = longest == extent.x ? 0 : longest == extent.y ? 1 : 2;
@@ -64,8 +64,17 @@ void grow_bounds(const Shape& shape, const Box& box, double resolution_m, Box& t
 
 Box tight_bounds_m(const Shape& shape, double resolution_m) {
     Box tight{Vec3(1e9), Vec3(-1e9)};
+    // Coarse points first: what lies between those inside need not be looked into any more.
+    constexpr int kPoints = 16;
+    const Box box = shape.bounds_m();
+    for (int k = 0; k < kPoints * kPoints * kPoints; ++k) {
+        const Vec3 share((k % kPoints + 0.5) / kPoints, (k / kPoints % kPoints + 0.5) / kPoints,
+                         (k / kPoints / kPoints + 0.5) / kPoints);
+        const Vec3 p = box.low + share * (box.high - box.low);
+        if (shape.distance_m(p) < 0.0) tight = Box{glm::min(tight.low, p), glm::max(tight.high, p)};
+    }
     grow_bounds(shape, shape.bounds_m(), resolution_m, tight);
-    return tight;
+    return Box{tight.low - resolution_m, tight.high + resolution_m};
 }
 
 ShapePtr make_shape(std::function<double(const Vec3&)> distance_m, const Box& bounds_m) {

@@ -21,7 +21,8 @@ ShapePtr make_union(std::vector<ShapePtr> shapes, double blend_m = 0.0);
 /// The part of `shape` inside a box.
 ShapePtr make_clipped(ShapePtr shape, const Box& box_m);
 
-/// The box that the solid really fills, to within about `resolution_m` outwards: bounds_m() may be much larger.
+/// The box that the solid really fills, up to 2 `resolution_m` wider: bounds_m() may be much larger. Spikes thinner than
+/// the resolution may stick out.
 Box tight_bounds_m(const Shape& shape, double resolution_m);
 
 double box_distance_m(const Box& box_m, const Vec3& position_m);
