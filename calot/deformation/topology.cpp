@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 
+#include "calot/deformation/falling.h"
 #include "calot/deformation/holding.h"
 #include "calot/deformation/integrate.h"
 
@@ -45,19 +46,6 @@ struct Severing {
         mark_changed(phyxel + offset);
     }
 
-    /// Hexels of a phyxel that fall, with the heat they hold.
-    void drop_hexels(const Int3& c, std::uint64_t word) {
-        for (; word != 0; word &= word - 1) {
-            const std::int64_t hexel = model.hexels.index(c * shifts.m + hexel_of_bit(shifts.m, __builtin_ctzll(word)));
-            float& enthalpy_J_per_m3 = state.enthalpy_J_per_m3[static_cast<std::size_t>(hexel)];
-            state.hexel_present.clear(hexel);
-            state.energy_J.debris += static_cast<double>(enthalpy_J_per_m3) * model.hexel_volume_m3();
-            enthalpy_J_per_m3 = 0.0f;
-            ++state.hexels_fallen;
-            exchange.removed_hexels.push_back(hexel);
-        }
-    }
-
     void remove_phyxel(std::int64_t phyxel) {
         const auto p = static_cast<std::size_t>(phyxel);
         work.occupancy[p] = 0;
@@ -82,7 +70,7 @@ struct Severing {
             const std::int64_t phyxel = exchange.changed_phyxels[k];
             std::uint64_t& word = work.occupancy[static_cast<std::size_t>(phyxel)];
             const std::uint64_t main = shifts.largest_component(word);
-            drop_hexels(model.phyxels.coordinates(phyxel), word & ~main);
+            drop_hexels(model, state, exchange, phyxel, word & ~main);
             word = main;
             if (main == 0) remove_phyxel(phyxel);
         }
@@ -169,7 +157,7 @@ struct Severing {
     void free_piece(std::int64_t count) {
         for (std::int64_t k = 0; k < count; ++k) {
             const std::int64_t phyxel = visited_phyxel(k);
-            drop_hexels(model.phyxels.coordinates(phyxel), work.occupancy[static_cast<std::size_t>(phyxel)]);
+            drop_hexels(model, state, exchange, phyxel, work.occupancy[static_cast<std::size_t>(phyxel)]);
             remove_phyxel(phyxel);
             for (const NeighbourLink& link : neighbour_links()) {
                 if (link.direction < 0) continue;

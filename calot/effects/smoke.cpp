@@ -13,7 +13,7 @@ namespace {
 
 // How smoke looks is tuned by eye; numbers that follow from something say so.
 constexpr int kMoveEvery = 10;                    ///< ticks
-constexpr double kPuff_kg = 5e-8;                 ///< 20 to 30 mg/s at 40 W and 0.6 1/s of suction: about 800 puffs
+constexpr double kPuff_kg = 5e-8;                 ///< 20 to 30 mg/s at 40 W and 1.5 1/s of suction: about 300 puffs
 constexpr int kPuffsPerTick = 4;                  ///< the rest waits
 constexpr double kApart_m = 5e-3;                 ///< gas this far from what is pending starts a puff of its own
 constexpr float kStartRadius_m = 1.2e-3f;         ///< about two hexels
@@ -24,7 +24,7 @@ constexpr float kSwirl_m = 12e-3f;                ///< their size
 constexpr float kSwirlDrift_per_s = 0.7f;         ///< how fast they change, in sizes a second
 constexpr double kCooling_per_s = 2.0;            ///< buoyancy fades as cool gas mixes in
 constexpr float kDiffusivity_m2_per_s = 2.5e-5f;  ///< vapour in carbon dioxide has 1.6e-5, small eddies add to it
-constexpr double kFogEvaporation_per_s = 0.8;     ///< insufflated gas is dry
+constexpr double kFogEvaporation_per_s = 1.5;     ///< insufflated gas is dry
 constexpr float kOldest_s = 8.0f;
 constexpr double kThinnest_kg = 0.02 * kPuff_kg;  ///< less mass than this cannot be seen
 constexpr double kGas_K = 306.0, kBoiling_K = 373.0;
@@ -85,10 +85,10 @@ void Smoke::step(const tissue::Exchange& exchange, const std::vector<Vec3f>& wor
     }
     particles_.resize(kept);
 
-    // The fuller the room, the larger the puffs; at the limit gas waits for a place.
+    // The fuller the room and the more gas waits, the larger the puffs; at the limit gas waits for a place.
     for (int puff = 0; puff < kPuffsPerTick && particles_.size() < parameters_.max_particles; ++puff) {
         const double filled = static_cast<double>(particles_.size()) / static_cast<double>(parameters_.max_particles);
-        const double enough = kPuff_kg / std::max(0.1, 1.0 - filled);
+        const double enough = std::max(kPuff_kg / std::max(0.1, 1.0 - filled), pending_kg() / 16.0);
         if (pending_kg() < enough) break;
         emit(puff + 1 == kPuffsPerTick ? pending_kg() : enough);
     }

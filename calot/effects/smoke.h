@@ -26,10 +26,11 @@ struct SmokeParticle {
 };
 
 /// Mass extinction of all that a hexel gave off, K [m^2/kg]. Smoke of pyrolysis: 4400 m^2 per kg of aerosol
-/// (Mulholland, SFPE Handbook), of which about a tenth of the gasified tissue becomes. Steam: fog droplets of 10 um
-/// have 300 m^2/kg, a third of the vapour is taken to be fog (chosen).
-inline constexpr float kSmokeExtinction_m2_per_kg = 440.0f;
-inline constexpr float kSteamExtinction_m2_per_kg = 100.0f;
+/// (Mulholland, SFPE Handbook), of which a twentieth of the gasified tissue becomes. Steam: fog droplets of 10 um have
+/// 300 m^2/kg, a tenth of the vapour is taken to be fog in dry warm carbon dioxide (both shares chosen by comparing
+/// pictures with laparoscopic video, where the field stays in sight through short bursts).
+inline constexpr float kSmokeExtinction_m2_per_kg = 220.0f;
+inline constexpr float kSteamExtinction_m2_per_kg = 30.0f;
 
 /// Optical depth through the middle of a puff; the two shares say how grey it is.
 struct OpticalDepth {
@@ -39,7 +40,7 @@ struct OpticalDepth {
 OpticalDepth optical_depth(const SmokeParticle& particle);
 
 struct SmokeParameters {
-    double suction_per_s = 0.6;      ///< share of all smoke drawn off a second
+    double suction_per_s = 1.5;      ///< share of all smoke drawn off a second
     double buoyancy_m_per_s2 = 0.6;  ///< of steam at 100 C as it leaves the tissue
     std::size_t max_particles = 2048;
     Vec3 up{0.0, 0.0, 1.0};  ///< the patient lies on the back: up is anterior

@@ -4,6 +4,7 @@
 
 #include "calot/deformation/embedding.h"
 #include "calot/deformation/integrate.h"
+#include "calot/deformation/tear.h"
 #include "calot/deformation/topology.h"
 #include "calot/instruments/contact.h"
 
@@ -71,6 +72,7 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     place_gas(model, state, work);  // while the phyxels that carried it are still there
     clock.lap(Stage::removal);
 
+    deformation::tear_overstretched(model, state, exchange, work.deformation);
     deformation::sever_burnt_links(model, state, exchange, work.deformation);
     clock.lap(Stage::topology);
 

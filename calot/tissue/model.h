@@ -22,44 +22,46 @@ enum class PhaseModel {
 /// Deformation (physics: docs/physics.md section 2).
 struct DeformationParameters {
     ElasticLaw law = ElasticLaw::stable_neo_hookean;
-    double volume_stiffness_Pa = 0.0;     ///< k_v of Eq. (8), Saint Venant-Kirchhoff only
-    double hourglass_alpha = 0.6;         ///< share of E in the hourglass control, 0.3 to 0.6
-    double damping_per_s = 80.0;          ///< gamma: velocity decays by exp(-gamma dt)
-    double time_step_safety = 0.7;        ///< dt <= safety * s / c_L
-    double mass_fraction_floor = 0.25;    ///< phyxels are never lighter than this share of a full cell
-    double singular_ratio = 0.03;         ///< lambda_min/lambda_max of A below which own stress is zero
-    Vec3 gravity_m_per_s2{0.0};           ///< default none: the rest shape is the anatomy as it hangs
-    int substeps = 0;                     ///< per tick; 0 = derived from the softest tissue's wave speed (set by tissue::sample)
+    double volume_stiffness_Pa = 0.0;   ///< k_v of Eq. (8), Saint Venant-Kirchhoff only
+    double hourglass_alpha = 0.6;       ///< share of E in the hourglass control, 0.3 to 0.6
+    double damping_per_s = 80.0;        ///< gamma: velocity decays by exp(-gamma dt)
+    double time_step_safety = 0.7;      ///< dt <= safety * s / c_L
+    double mass_fraction_floor = 0.25;  ///< phyxels are never lighter than this share of a full cell
+    double singular_ratio = 0.03;       ///< lambda_min/lambda_max of A below which own stress is zero
+    double tear_stretch = 2.5;   ///< tissue stretched beyond this tears; chosen: fat parts at about twice its length
+    Vec3 gravity_m_per_s2{0.0};  ///< default none: the rest shape is the anatomy as it hangs
+    int substeps = 0;            ///< per tick; 0 = derived from the softest tissue's wave speed (set by tissue::sample)
 };
 
 /// Electric field (section 5).
 struct ElectricParameters {
-    int refresh_ticks = 8;                ///< the field is solved anew every so many ticks
-    int window_cells = 48;                ///< edge of the cubic window about the tip, hexels
-    double relative_residual = 1e-2;      ///< conjugate gradients stop here
+    int refresh_ticks = 8;            ///< the field is solved anew every so many ticks
+    int window_cells = 48;            ///< edge of the cubic window about the tip, hexels
+    double relative_residual = 1e-2;  ///< conjugate gradients stop here
     int max_iterations = 60;
-    double voltage_limit_V = 700.0;       ///< RMS, 1 kV peak of a cutting sine; the power-limited source never exceeds this
-    double contact_gap_m = 0.05e-3;       ///< bare metal this close to a hexel's surface carries current into it
+    double voltage_limit_V = 700.0;  ///< RMS, 1 kV peak of a cutting sine; the power-limited source never exceeds this
+    double contact_gap_m = 0.05e-3;  ///< bare metal this close to a hexel's surface carries current into it
 };
 
 /// Heat (section 6).
 struct ThermalParameters {
     PhaseModel phase_model = PhaseModel::water_then_solids;
-    int refresh_ticks = 4;                      ///< conduction is stepped every so many ticks
-    double body_temperature_K = 310.15;         ///< T_0, also of arterial blood
-    double gas_temperature_K = 306.15;          ///< insufflated carbon dioxide
-    double gas_transfer_W_per_m2K = 20.0;       ///< h_c of faces towards gas
-    double held_transfer_W_per_m2K = 500.0;     ///< h_c of faces towards the organs that hold the tissue
+    int refresh_ticks = 4;                   ///< conduction is stepped every so many ticks
+    double body_temperature_K = 310.15;      ///< T_0, also of arterial blood
+    double gas_temperature_K = 306.15;       ///< insufflated carbon dioxide
+    double gas_transfer_W_per_m2K = 20.0;    ///< h_c of faces towards gas
+    double held_transfer_W_per_m2K = 500.0;  ///< h_c of faces towards the organs that hold the tissue
     double blood_density_kg_per_m3 = 1050.0;
     double blood_specific_heat_J_per_kgK = 3617.0;
     double boiling_temperature_K = 373.15;
-    double threshold_temperature_K = 373.15;    ///< T_v of PhaseModel::threshold
+    double threshold_temperature_K = 373.15;  ///< T_v of PhaseModel::threshold
 };
 
 /// Contact between instruments and tissue (section 8).
 struct ContactParameters {
-    double stiffness_N_per_m = 600.0;     ///< penalty per touched hexel of 0.6 mm; softer lets a 1 mm tip slip between hexels
-    double friction = 0.15;               ///< Coulomb coefficient of wet tissue on steel
+    double stiffness_N_per_m =
+        600.0;               ///< penalty per touched hexel of 0.6 mm; softer lets a 1 mm tip slip between hexels
+    double friction = 0.15;  ///< Coulomb coefficient of wet tissue on steel
 };
 
 /// A rigid organ: tissue is held where it meets one that holds, instruments collide with it, it is drawn.
@@ -81,13 +83,14 @@ struct Model {
     // --- Hexels
     Array<MaterialIndex> hexel_material;  ///< [hexels.cells] material at the start, kNoMaterial = no tissue
     BitArray hexel_initial;               ///< [hexels.cells] present at the start
-    BitArray hexel_held;                  ///< [hexels.cells] empty cells inside an organ that holds: faces towards them are held, not gas
+    BitArray
+        hexel_held;  ///< [hexels.cells] empty cells inside an organ that holds: faces towards them are held, not gas
 
     // --- Phyxels
-    BitArray phyxel_initial;              ///< [phyxels.cells] has hexels at the start
-    BitArray phyxel_ghost;                ///< [phyxels.cells] fixed cells outside the tissue (u = 0) that hold their neighbours
-    Array<float> phyxel_mass_scale;       ///< [phyxels.cells] >= 1, selective mass scaling of stiff tissues
-    double added_mass_kg = 0.0;           ///< by mass scaling, over the whole tissue
+    BitArray phyxel_initial;  ///< [phyxels.cells] has hexels at the start
+    BitArray phyxel_ghost;    ///< [phyxels.cells] fixed cells outside the tissue (u = 0) that hold their neighbours
+    Array<float> phyxel_mass_scale;  ///< [phyxels.cells] >= 1, selective mass scaling of stiff tissues
+    double added_mass_kg = 0.0;      ///< by mass scaling, over the whole tissue
 
     std::vector<RigidOrgan> organs;
 
