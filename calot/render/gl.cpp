@@ -2,6 +2,10 @@
 
 #include <stdexcept>
 
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/lsan_interface.h>
+#endif
+
 namespace calot::render::gl {
 
 namespace {
@@ -33,6 +37,18 @@ GLuint compile(const char* program, GLenum stage, const std::string& head, const
 }
 
 }  // namespace
+
+#if defined(__SANITIZE_ADDRESS__)
+DriverLeaksIgnored::DriverLeaksIgnored() {
+    __lsan_disable();
+}
+DriverLeaksIgnored::~DriverLeaksIgnored() {
+    __lsan_enable();
+}
+#else
+DriverLeaksIgnored::DriverLeaksIgnored() = default;
+DriverLeaksIgnored::~DriverLeaksIgnored() = default;
+#endif
 
 bool is_es() {
     return !epoxy_is_desktop_gl();

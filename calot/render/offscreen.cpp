@@ -8,6 +8,7 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include "calot/render/gl.h"
 #include "calot/render/renderer.h"
 
 namespace calot::render {
@@ -68,6 +69,7 @@ EGLContext create_context(EGLDisplay display, bool es, EGLConfig& config) {
 }  // namespace
 
 OffscreenContext::OffscreenContext(Api api) : impl_(std::make_unique<Impl>()) {
+    const gl::DriverLeaksIgnored ignored;
     impl_->display = open_display();
     EGLConfig config = nullptr;
     if (api != Api::opengl_es) impl_->context = create_context(impl_->display, false, config);
