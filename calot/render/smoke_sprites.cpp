@@ -12,7 +12,7 @@ constexpr float kReachInRadii = 2.45f;
 /// Share of the puffs' optical depth that is drawn: all of it would hide the field as a wall. Droplets scatter forward,
 /// so that much of what they take from the straight beam arrives all the same; and a scope sees through thin gaps that
 /// puffs are too coarse to have. Chosen by eye.
-constexpr float kDrawnShare = 0.3f;
+constexpr float kDrawnShare = 0.35f;
 constexpr float kLeastOpticalDepth = 0.004f;
 constexpr float kMostOpticalDepth = 1.0f;
 
