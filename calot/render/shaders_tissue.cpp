@@ -222,7 +222,8 @@ void main() {
     // --- What burning leaves behind. Ragged by noise: steps follow the peak temperature shifted by up to 20 K.
     float ragged = 60.0 * (s.base.a - 0.5) + 40.0 * (s.fine.r - 0.5);
     float peak = v_burn.y + clamp((v_burn.y - 45.0) / 40.0, 0.0, 1.0) * ragged;
-    float blanched = max(smoothstep(52.0, 72.0, peak), smoothstep(0.3, 0.9, v_burn.z));
+    // The collagen of vessels keeps its colour longer than the protein between fat cells.
+    float blanched = max(smoothstep(56.0, 80.0, peak), smoothstep(0.3, 0.9, v_burn.z)) * mix(0.4, 1.0, fatness);
     float browned = smoothstep(125.0, 200.0, peak);
     float charred = smoothstep(215.0, 285.0, peak);
     // Laid bare: raw, frothy, wet, with thin pale strands.
