@@ -18,15 +18,15 @@ std::int64_t resident_bytes() {
     return resident * 4096;
 }
 
-/// The hook circles over a small block and presses every second; 20 W for 50 ms of each.
+/// The hook circles over a small block and presses every second; 60 W for 200 ms of each.
 tissue::Input circling(const Vec3& trocar, double time_s) {
     tissue::Input input;
     const double angle = 0.3 * time_s, phase = 2.0 * M_PI * time_s;
     const Vec3 tip(0.003 * std::cos(angle), 0.003 * std::sin(angle), 0.002 - 0.0035 * (0.5 - 0.5 * std::cos(phase)));
     input.hook = instruments::pose_through_trocar(trocar, tip, angle);
     const double within = time_s - std::floor(time_s);
-    input.pedal = within > 0.5 && within < 0.55;
-    input.power_setting_W = 20.0;
+    input.pedal = within > 0.4 && within < 0.6;
+    input.power_setting_W = 60.0;
     return input;
 }
 
