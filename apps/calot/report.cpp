@@ -71,10 +71,12 @@ std::string opening(const RunRecord& r, const RunPlan& plan) {
     return out;
 }
 
-std::string video(const RunRecord& r, const std::string& directory) {
-    if (r.video.empty()) return "";
+/// The video, or a still in its place.
+std::string hero(const RunRecord& r, const std::string& directory) {
     const std::string poster =
         r.stills.empty() ? "" : embedded_png(directory + "/" + r.stills[r.stills.size() / 2].file);
+    if (r.video.empty() && poster.empty()) return "";
+    if (r.video.empty()) return fmt::format("<img class=\"hero\" alt=\"the middle of the run\" src=\"{}\">\n", poster);
     return fmt::format("<video class=\"hero\" src=\"{}\" poster=\"{}\" controls loop muted playsinline></video>\n",
                        r.video, poster);
 }
@@ -274,7 +276,7 @@ std::string report_html(const RunRecord& record, const RunPlan& plan, const std:
     out += fmt::format("<title>{} · Calot</title>\n<style>{}</style></head>\n<body><main>\n", escaped(record.scene),
                        kReportStyle);
     out += opening(record, plan);
-    out += video(record, directory);
+    out += hero(record, directory);
     out += key_figures(record);
     out += injuries(record);
     out += kAbout;

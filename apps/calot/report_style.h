@@ -33,7 +33,7 @@ svg .y,svg .m{text-anchor:end}svg .x{text-anchor:middle}svg path{fill:none;strok
 .stack{height:36px;border-radius:8px;overflow:hidden}
 .legend{list-style:none;display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,340px),1fr));gap:6px 36px;padding:0;margin:16px 0}
 .legend li{display:flex;align-items:baseline;gap:10px}.legend b{margin-left:auto;font-weight:600;white-space:nowrap}
-.legend span{color:var(--soft);min-width:52px;text-align:right}
+.legend span{white-space:nowrap;color:var(--soft);min-width:52px;text-align:right}
 table{border-collapse:collapse;width:100%;max-width:760px}th{white-space:nowrap}td,th{text-align:left;padding:6px 14px 6px 0;border-bottom:1px solid var(--line);vertical-align:top}
 td+td{font-variant-numeric:tabular-nums}th{color:var(--soft);font-weight:500}
 .good{color:var(--green)}.bad{color:var(--red)}.note{border-left:4px solid var(--warm);padding:8px 14px;background:var(--card);border-radius:0 8px 8px 0}
