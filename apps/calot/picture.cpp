@@ -11,7 +11,7 @@ Picture::Picture(const simulation::Setup& setup) : organs_(render::organ_meshes(
 }
 
 void Picture::fill(const simulation::Simulation& run, const tissue::Input& input, render::View& view) {
-    const surface::Mesh& mesh = run.surface().rest_mesh();
+    const surface::Mesh& mesh = run.surface().smooth_mesh();
     run.world_surface(world_);
     view.camera = camera_;
     view.time_s = run.time_s();

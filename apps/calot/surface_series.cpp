@@ -11,7 +11,7 @@ SurfaceSeries::SurfaceSeries(const std::string& directory, double every_s) : dir
 }
 
 void SurfaceSeries::write(const simulation::Simulation& run) {
-    const surface::Mesh& mesh = run.surface().rest_mesh();
+    const surface::Mesh& mesh = run.surface().smooth_mesh();
     const std::vector<std::int64_t>& owner = run.surface().owner();
     run.world_surface(world_);
     const std::size_t points = mesh.position_m.size();

@@ -44,7 +44,7 @@ bool Simulation::tick(const tissue::Input& input) {
 }
 
 void Simulation::world_surface(WorldSurface& out) const {
-    const surface::Mesh& mesh = work_.surface.rest_mesh();
+    const surface::Mesh& mesh = work_.surface.smooth_mesh();
     out.position_m.resize(mesh.position_m.size());
     out.deformation_gradient.resize(mesh.position_m.size());
     // While the surface changes from frame to frame, keeping weights does not pay.

@@ -37,7 +37,7 @@ class Simulation {
     const surface::Surface& surface() const { return work_.surface; }
     const std::vector<tissue::Capsule>& capsules() const { return work_.exchange.capsules; }
 
-    /// World positions and deformation gradients of Surface::rest_mesh()'s vertices. Not for several threads at once.
+    /// World positions and deformation gradients of Surface::smooth_mesh()'s vertices. Not for several threads at once.
     void world_surface(WorldSurface& out) const;
 
     /// delivered - (outflow + gas + surface + perfusion + debris + stored), as a fraction of delivered (0 when none).
