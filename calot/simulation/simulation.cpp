@@ -29,6 +29,9 @@ Work::Work(const tissue::Model& model, const tissue::State& state, const instrum
       surface(model),
       smoke(smoke) {
     tissue::reserve_exchange(model, exchange);
+    gas_rest_m.reserve(exchange.gas.capacity());
+    gas_world_m.reserve(exchange.gas.capacity());
+    gas_owner.reserve(exchange.gas.capacity());
     surface.rebuild(model, state);
 }
 

@@ -12,7 +12,7 @@ void reserve_exchange(const Model& model, Exchange& exchange) {
     exchange.near.reserve(near);
     exchange.contacts.reserve(2 * near);
     exchange.removed_hexels.reserve(hexels);
-    exchange.gas.reserve(std::min<std::size_t>(2 * hexels, std::size_t{1} << 20));
+    exchange.gas.reserve(std::min(2 * hexels, static_cast<std::size_t>(kGasCapacity)));
     exchange.changed_phyxels.reserve(phyxels);
 }
 

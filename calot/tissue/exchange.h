@@ -87,5 +87,7 @@ struct Exchange {
 /// changed phyxels are bounded by what exists. Of near hexels, the nearest kNearCapacity are kept.
 void reserve_exchange(const Model& model, Exchange& exchange);
 inline constexpr std::int64_t kNearCapacity = 4096;
+/// Gas events of a tick; smoke of what lies beyond is not drawn (its energy is booked all the same).
+inline constexpr std::int64_t kGasCapacity = 16384;
 
 }  // namespace calot::tissue

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "calot/base/parallel.h"
 #include "calot/simulation/simulation.h"
 #include "calot/surface/surface.h"
 #include "simulation/test_setups.h"
+#include "support/allocations.h"
 
 namespace calot::simulation {
 
@@ -35,6 +37,22 @@ TEST(Burn, BudgetsCloseAndTheSurfaceStaysClosed) {
     EXPECT_LT(std::abs(run.energy_imbalance()), 1e-3);  // the specification's bound
     EXPECT_GT(peak_force_N, 0.005);
     EXPECT_LT(peak_force_N, 2.0);
+}
+
+// One thread: oneTBB allocates its own tasks.
+TEST(Burn, TicksAllocateNothing) {
+    const ThreadLimit limit(1);
+    const auto setup = burnt_block_setup();
+    Simulation run(setup);
+    long allocated = 0;
+    while (run.time_s() < setup->duration_s) {
+        const tissue::Input input = setup->script.at(run.time_s());
+        const long before = calot::test::allocations();
+        run.tick(input);
+        allocated += calot::test::allocations() - before;
+    }
+    EXPECT_GT(run.state().hexels_burnt, 20);
+    EXPECT_EQ(allocated, 0);
 }
 
 TEST(Burn, ColdPressLeavesNoTrace) {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "allocations.h"
 #include "bodies.h"
 #include "calot/base/parallel.h"
+#include "support/allocations.h"
 
 namespace calot::surface {
 
@@ -107,14 +107,14 @@ TEST(Update, DoesNotAllocate) {
     const std::vector<std::int64_t> gone = crater(body, Vec3(4.0, 20.0, 20.0), 4000);
     tissue::Exchange exchange;
     exchange.removed_hexels.reserve(40);
-    const long before = allocations();
+    const long before = calot::test::allocations();
     for (std::size_t k = 0; k < gone.size(); k += 40) {
         exchange.removed_hexels.assign(gone.begin() + static_cast<std::ptrdiff_t>(k),
                                        gone.begin() + static_cast<std::ptrdiff_t>(k + 40));
         for (std::int64_t h : exchange.removed_hexels) body.state.hexel_present.clear(h);
         surface.update_dirty_blocks(body.model, body.state, exchange);
     }
-    EXPECT_EQ(allocations() - before, 0);
+    EXPECT_EQ(calot::test::allocations() - before, 0);
 }
 
 TEST(Update, VersionCountsChanges) {
