@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calot/base/units.h"
+#include "calot/deformation/integrate.h"
 #include "calot/deformation/topology.h"
 #include "commands.h"
 
@@ -109,7 +110,7 @@ Json describe(const simulation::Setup& setup) {
     out["materials"] = materials;
     out["volume_m3"] = volume;
     out["mass_kg"] = mass;
-    out["added_mass_kg"] = model.added_mass_kg;
+    out["added_mass_kg"] = deformation::added_mass_kg(deformation::make_work(model, state));
     out["time_steps"] = {{"tick_s", model.tick_s},
                          {"deformation_s", model.tick_s / model.deformation.substeps},
                          {"deformation_substeps", model.deformation.substeps},
@@ -159,7 +160,7 @@ void print_text(const Json& j) {
     print_row("held by",
               fmt::format("{} ghost phyxels, {} links", grouped(j["ghost_phyxels"]), grouped(j["links"]["to_ghosts"])));
     print_row("loose, left out", fmt::format("{} hexels", grouped(j["loose_hexels_left_out"])));
-    print_row("added mass", fmt::format("{:.3g} g ({:.2g} % of the tissue), to keep stiff tissue stable",
+    print_row("added mass", fmt::format("{:.3g} g ({:.0f} % of the tissue), to keep stiff and light phyxels stable",
                                         j["added_mass_kg"].get<double>() * 1e3,
                                         100.0 * j["added_mass_kg"].get<double>() / j["mass_kg"].get<double>()));
     const Json& t = j["time_steps"];
