@@ -194,15 +194,15 @@ double threshold_front_error(int n) {
 // of first order in s_h at least.
 TEST(Stefan, BoilOffFrontFollowsTheSimilaritySolution) {
     const double coarse = boil_off_front_error(20), fine = boil_off_front_error(80);
-    EXPECT_LT(coarse, 0.03);
-    EXPECT_LT(fine, 0.008);
+    EXPECT_LT(coarse, 2e-3);
+    EXPECT_LT(fine, 5e-4);
     EXPECT_LT(fine, 0.5 * coarse);
 }
 
 TEST(Stefan, ThresholdFrontFollowsTheSimilaritySolution) {
     const double coarse = threshold_front_error(20), fine = threshold_front_error(80);
-    EXPECT_LT(coarse, 0.03);
-    EXPECT_LT(fine, 0.008);
+    EXPECT_LT(coarse, 2e-3);
+    EXPECT_LT(fine, 5e-4);
     EXPECT_LT(fine, 0.5 * coarse);
 }
 
