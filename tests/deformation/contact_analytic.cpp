@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "calot/deformation/embedding.h"
-#include "tests/deformation/bodies.h"
+#include "calot/validation/elastic_rig.h"
 
-namespace calot::deformation::test {
+namespace calot::deformation::rig {
 
 namespace {
 
@@ -180,4 +180,4 @@ TEST(Contact, IsStableHoweverStiff) {
     body.for_each_phyxel([&](std::int64_t p) { EXPECT_LT(glm::length(body.velocity_m_per_s(p)), 0.05); });
 }
 
-}  // namespace calot::deformation::test
+}  // namespace calot::deformation::rig

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/deformation/bodies.h"
-#include "tests/deformation/fem.h"
+#include "calot/validation/elastic_rig.h"
+#include "calot/validation/fem.h"
 
-namespace calot::deformation::test {
+namespace calot::deformation::rig {
 
 namespace {
 
@@ -74,4 +74,4 @@ TEST(Convergence, Cube) {
     }
 }
 
-}  // namespace calot::deformation::test
+}  // namespace calot::deformation::rig

@@ -5,9 +5,9 @@
 
 #include "calot/base/hash.h"
 #include "calot/base/parallel.h"
-#include "tests/deformation/bodies.h"
+#include "calot/validation/elastic_rig.h"
 
-namespace calot::deformation::test {
+namespace calot::deformation::rig {
 
 using tissue::ElasticLaw;
 
@@ -100,4 +100,4 @@ TEST(Integrate, GivesTheSameBytesForAnyNumberOfThreads) {
     }
 }
 
-}  // namespace calot::deformation::test
+}  // namespace calot::deformation::rig

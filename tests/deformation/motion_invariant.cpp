@@ -5,9 +5,9 @@
 #include "calot/base/parallel.h"
 #include "calot/deformation/topology.h"
 #include "support/allocations.h"
-#include "tests/deformation/bodies.h"
+#include "calot/validation/elastic_rig.h"
 
-namespace calot::deformation::test {
+namespace calot::deformation::rig {
 
 namespace {
 
@@ -230,4 +230,4 @@ TEST(Motion, SaysWhereAndWhenItBlewUp) {
     EXPECT_TRUE(there == body.displacement_m(body.model.phyxels.index(1, 1, 1)) || std::isnan(there.x));
 }
 
-}  // namespace calot::deformation::test
+}  // namespace calot::deformation::rig

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/deformation/bodies.h"
+#include "calot/validation/elastic_rig.h"
 
-namespace calot::deformation::test {
+namespace calot::deformation::rig {
 
 using tissue::ElasticLaw;
 
@@ -121,4 +121,4 @@ TEST_P(EveryLaw, LinearisesToLame) {
         EXPECT_LT(glm::length(stress[c] - expected[c]), 10.0 * size * size * lambda);
 }
 
-}  // namespace calot::deformation::test
+}  // namespace calot::deformation::rig

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/deformation/bodies.h"
+#include "calot/validation/elastic_rig.h"
 
-namespace calot::deformation::test {
+namespace calot::deformation::rig {
 
 namespace {
 
@@ -102,4 +102,4 @@ TEST(Stability, OfMixedTissues) {
         }
 }
 
-}  // namespace calot::deformation::test
+}  // namespace calot::deformation::rig

@@ -3,14 +3,14 @@
 
 #include <cstring>
 
-#include "bodies.h"
+#include "calot/validation/elastic_rig.h"
 #include "calot/deformation/topology.h"
 
 namespace calot::deformation {
 
 namespace {
 
-using test::Body;
+using rig::Body;
 
 struct BurningBody : Body {
     std::int64_t initial_hexels, burnt = 0;
@@ -21,7 +21,7 @@ struct BurningBody : Body {
         refresh();
         initial_hexels = state.hexel_present.count();
         tissue::reserve_exchange(model, exchange);
-        test::shake(*this, 0.05, 0.0, 3);
+        rig::shake(*this, 0.05, 0.0, 3);
     }
     /// Takes hexels out of State as thermal does: within a ball about a random place, or anywhere at random.
     void burn() {
@@ -70,7 +70,7 @@ void expect_same_work(const Work& a, const Work& b) {
 }
 
 void burn_down(bool held, int hexels_per_edge, std::uint64_t seed) {
-    BurningBody body(test::block({5, 4, 3}, held, hexels_per_edge), seed);
+    BurningBody body(rig::block({5, 4, 3}, held, hexels_per_edge), seed);
     const std::int64_t initial_links = live_links(body.state);
     const auto* removed = body.exchange.removed_hexels.data();
     const auto* changed = body.exchange.changed_phyxels.data();

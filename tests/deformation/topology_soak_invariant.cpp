@@ -1,19 +1,19 @@
 // Burning while the body moves: whatever shape is left, motion stays finite and dies away.
 #include <gtest/gtest.h>
 
-#include "bodies.h"
+#include "calot/validation/elastic_rig.h"
 #include "calot/deformation/topology.h"
 
 namespace calot::deformation {
 
 namespace {
 
-using test::Body;
+using rig::Body;
 
 /// Shaken, left alone: the energy must fall far below what it was.
 void expect_calm(const Int3& size) {
-    Body body(test::block(size, true));
-    test::shake(body, 0.01, 0.0, 1);
+    Body body(rig::block(size, true));
+    rig::shake(body, 0.01, 0.0, 1);
     const double before_J = elastic_energy_J(body.model, body.state, body.work);
     for (int k = 0; k < 200; ++k) body.tick();
     ASSERT_TRUE(body.state.status.ok) << size.x << " x " << size.y << " x " << size.z;
@@ -30,7 +30,7 @@ TEST(Soak, SlenderHeldBlocksAreStable) {
 // Holes everywhere, gravity five times ours in a changing direction: thin bridges, lone phyxels, falling crumbs.
 TEST(Soak, BurningInMotionStaysFinite) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-        Body body(test::block({6, 5, 4}, true));
+        Body body(rig::block({6, 5, 4}, true));
         sever_initial_links(body.model, body.state);
         body.refresh();
         tissue::reserve_exchange(body.model, body.exchange);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "bodies.h"
+#include "calot/validation/elastic_rig.h"
 #include "calot/anatomy/shapes.h"
 #include "calot/deformation/occupancy.h"
 
@@ -14,8 +14,8 @@ namespace calot::deformation {
 
 namespace {
 
-using test::Body;
-using test::kSpacing_m;
+using rig::Body;
+using rig::kSpacing_m;
 
 constexpr double kHexel_m = kSpacing_m / 4;
 constexpr int kAcross = 3;                         ///< width and height of the bars, phyxels
@@ -127,7 +127,7 @@ TEST(Occupancy, TouchLooksAtTheSharedFace) {
 }
 
 TEST(InitialTopology, AWholeBlockKeepsAllItsLinks) {
-    Body body(test::block({3, 2, 4}, true));
+    Body body(rig::block({3, 2, 4}, true));
     const auto links = body.state.links;
     EXPECT_EQ(sever_initial_links(body.model, body.state), 0);
     for (std::size_t d = 0; d < links.size(); ++d) EXPECT_EQ(links[d].words(), body.state.links[d].words());
@@ -203,7 +203,7 @@ TEST(Topology, CrumbsFallWithTheirHeat) {
 }
 
 TEST(Topology, AFreeBodyKeepsItsLargestPiece) {
-    Body body(test::block({5, 2, 2}, false));
+    Body body(rig::block({5, 2, 2}, false));
     sever_initial_links(body.model, body.state);
     tissue::reserve_exchange(body.model, body.exchange);
     for (std::int64_t h = body.model.hexels.first; h < body.model.hexels.last; ++h)

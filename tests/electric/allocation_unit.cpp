@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "calot/base/parallel.h"
-#include "electric/rig.h"
+#include "calot/validation/electric_rig.h"
 #include "support/allocations.h"
 
 namespace calot::electric {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "electric/rig.h"
+#include "calot/validation/electric_rig.h"
 
 namespace calot::electric {
 

@@ -8,7 +8,7 @@
 #include "calot/base/hash.h"
 #include "calot/base/parallel.h"
 #include "calot/base/random.h"
-#include "electric/rig.h"
+#include "calot/validation/electric_rig.h"
 
 namespace calot::electric {
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "calot/base/random.h"
-#include "electric/rig.h"
+#include "calot/validation/electric_rig.h"
 
 namespace calot::electric {
 

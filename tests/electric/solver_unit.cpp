@@ -6,7 +6,7 @@
 
 #include "calot/base/random.h"
 #include "calot/electric/generator.h"
-#include "electric/rig.h"
+#include "calot/validation/electric_rig.h"
 
 namespace calot::electric {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "bodies.h"
+#include "calot/validation/surface_bodies.h"
 
 namespace calot::surface {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodies.h"
+#include "calot/validation/surface_bodies.h"
 
 namespace calot::surface {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "bodies.h"
+#include "calot/validation/surface_bodies.h"
 #include "calot/base/parallel.h"
 #include "support/allocations.h"
 

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "bodies.h"
+#include "calot/validation/surface_bodies.h"
 #include "calot/base/error.h"
 
 namespace calot::surface {

@@ -1,7 +1,9 @@
 #pragma once
 // A burn of a body of several tissues, for tests of budgets and of determinism.
 
-#include "thermal/bodies.h"
+#include <gtest/gtest.h>
+
+#include "calot/validation/heat_rig.h"
 
 namespace calot::thermal {
 

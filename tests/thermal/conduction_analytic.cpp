@@ -1,6 +1,8 @@
 // Conduction and surroundings against closed forms.
 
-#include "thermal/bodies.h"
+#include <gtest/gtest.h>
+
+#include "calot/validation/heat_rig.h"
 
 namespace calot::thermal {
 

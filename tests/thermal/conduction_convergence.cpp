@@ -1,6 +1,8 @@
 // Conduction converges with second order: dt shrinks with s_h^2, so that explicit Euler's first order counts twice.
 
-#include "thermal/bodies.h"
+#include <gtest/gtest.h>
+
+#include "calot/validation/heat_rig.h"
 
 namespace calot::thermal {
 

@@ -1,6 +1,8 @@
 // Arrhenius damage against times to Omega = 1 at constant temperature: exp(Ea/(R T)) / A.
 
-#include "thermal/bodies.h"
+#include <gtest/gtest.h>
+
+#include "calot/validation/heat_rig.h"
 
 namespace calot::thermal {
 

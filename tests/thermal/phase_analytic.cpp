@@ -1,6 +1,8 @@
 // Boiling and gasification against closed forms.
 
-#include "thermal/bodies.h"
+#include <gtest/gtest.h>
+
+#include "calot/validation/heat_rig.h"
 
 namespace calot::thermal {
 

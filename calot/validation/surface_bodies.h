@@ -1,5 +1,5 @@
 #pragma once
-// Hexel bodies for the tests of the surface: any set of cells of a small lattice.
+// Hexel bodies for checks of the surface: any set of cells of a small lattice.
 
 #include <functional>
 

@@ -1,7 +1,5 @@
 #pragma once
-// Bodies of hexels made by hand, for tests of heat.
-
-#include <gtest/gtest.h>
+// Bodies of hexels made by hand, for checks of heat.
 
 #include <cmath>
 #include <functional>

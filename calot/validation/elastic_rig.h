@@ -1,5 +1,5 @@
 #pragma once
-// Bodies for the tests of elasticity: blocks, blocks with random holes and cuts, random displacements.
+// Bodies for checks of elasticity: blocks, blocks with random holes and cuts, random displacements.
 
 #include <cmath>
 
@@ -10,7 +10,7 @@
 #include "calot/deformation/reference.h"
 #include "calot/tissue/sampling.h"
 
-namespace calot::deformation::test {
+namespace calot::deformation::rig {
 
 inline constexpr double kSpacing_m = 2.4e-3;  ///< of phyxels, 4 hexels of 0.6 mm
 
@@ -96,4 +96,4 @@ inline void shake(Body& body, double amplitude, double angle_rad, std::uint64_t 
     update_gradients(body.model, body.state, body.work);
 }
 
-}  // namespace calot::deformation::test
+}  // namespace calot::deformation::rig

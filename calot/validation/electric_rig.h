@@ -1,5 +1,5 @@
 #pragma once
-// Blocks of tissue with metal on chosen hexels, for the tests of the electric room.
+// Blocks of tissue with metal on chosen hexels, for checks of the electric room.
 
 #include <memory>
 #include <string>

@@ -12,7 +12,7 @@
 
 #include "calot/base/vec.h"
 
-namespace calot::deformation::test {
+namespace calot::deformation::rig {
 
 class ClampedBox {
   public:
@@ -111,4 +111,4 @@ class ClampedBox {
     Eigen::VectorXd solution_;
 };
 
-}  // namespace calot::deformation::test
+}  // namespace calot::deformation::rig
