@@ -195,7 +195,8 @@ std::string energy(const RunRecord& r) {
                       {"to gas and organs at the surface", "var(--green)", e.surface},
                       {"to blood", "var(--teal)", e.perfusion},
                       {"beyond the field's window", "var(--blue)", e.outflow},
-                      {"gone with pieces that fell", "var(--grey)", e.debris}},
+                      {"gone with pieces that fell", "var(--grey)", e.debris},
+                      {"in the hook", "var(--soft)", e.tip + e.transit}},
                      "J");
 }
 

@@ -32,7 +32,8 @@ std::string summary_json(const RunRecord& r) {
     // `latent` is the latent part of `gas`; the others add up to `delivered`.
     j["energy_J"] = {
         {"delivered", e.delivered}, {"stored", r.last.stored_J}, {"latent", e.latent},   {"gas", e.gas},
-        {"surface", e.surface},     {"perfusion", e.perfusion},  {"outflow", e.outflow}, {"debris", e.debris}};
+        {"surface", e.surface},     {"perfusion", e.perfusion},  {"outflow", e.outflow}, {"debris", e.debris},
+        {"tip", e.tip + e.transit}};
     j["energy_imbalance"] = r.energy_imbalance;
     // Means are over the ticks in contact.
     j["force_N"] = {{"max", r.force_N.max()},

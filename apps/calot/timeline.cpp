@@ -17,17 +17,19 @@ constexpr std::size_t kMostKept = 4000;
 constexpr const char* kHeader =
     "time_s,tip_x_m,tip_y_m,tip_z_m,force_x_N,force_y_N,force_z_N,force_N,pedal,power_setting_W,power_W,voltage_V,"
     "current_A,impedance_Ohm,max_temperature_K,hexels_burnt,hexels_fallen,links_severed,volume_removed_m3,"
-    "steam_and_smoke_kg,delivered_J,stored_J,latent_J,gas_J,surface_J,perfusion_J,outflow_J,debris_J\n";
+    "steam_and_smoke_kg,delivered_J,stored_J,latent_J,gas_J,surface_J,perfusion_J,outflow_J,debris_J,tip_J,tip_K,tip_"
+    "char_kg\n";
 
 std::string csv_line(const TimelineRow& r) {
     return fmt::format(
         "{:.3f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:d},{:g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{},"
-        "{:.6g},{:.6g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
+        "{:.6g},{:.6g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.2f},{:.6g}\n",
         r.time_s, r.tip_m.x, r.tip_m.y, r.tip_m.z, r.force_N.x, r.force_N.y, r.force_N.z, glm::length(r.force_N),
         r.pedal, r.power_setting_W, r.generator.power_W, r.generator.voltage_V, r.generator.current_A,
         r.generator.impedance_Ohm, r.max_temperature_K, r.hexels_burnt, r.hexels_fallen, r.links_severed,
         r.volume_removed_m3, r.emitted_kg, r.energy_J.delivered, r.stored_J, r.energy_J.latent, r.energy_J.gas,
-        r.energy_J.surface, r.energy_J.perfusion, r.energy_J.outflow, r.energy_J.debris);
+        r.energy_J.surface, r.energy_J.perfusion, r.energy_J.outflow, r.energy_J.debris,
+        r.energy_J.tip + r.energy_J.transit, r.tip.temperature_K, r.tip.char_kg);
 }
 
 }  // namespace
@@ -59,6 +61,7 @@ TimelineRow make_row(const simulation::Simulation& run, const tissue::Input& inp
         static_cast<double>(state.hexels_burnt + state.hexels_fallen) * run.model().hexel_volume_m3();
     row.emitted_kg = run.work().smoke.emitted_kg();
     row.energy_J = state.energy_J;
+    row.tip = state.tip;
     row.stored_J = thermal::stored_J(run.model(), state);
     return row;
 }

@@ -23,6 +23,7 @@ struct TimelineRow {
     double volume_removed_m3 = 0.0;
     double emitted_kg = 0.0;  ///< steam and smoke
     tissue::EnergyBudget energy_J;
+    tissue::TipState tip;
     double stored_J = 0.0;
 };
 

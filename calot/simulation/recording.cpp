@@ -39,7 +39,8 @@ struct StoredInput {
     double power_setting_W;
     std::uint8_t pedal;
     std::uint8_t mode;
-    std::uint8_t reserved[6];
+    std::uint8_t wipe_tip;
+    std::uint8_t reserved[5];
 };
 static_assert(sizeof(StoredInput) == 72);
 
@@ -51,6 +52,7 @@ StoredInput store(const tissue::Input& input) {
     std::memcpy(stored.orientation, wxyz, sizeof(wxyz));
     stored.power_setting_W = input.power_setting_W;
     stored.pedal = input.pedal ? 1 : 0;
+    stored.wipe_tip = input.wipe_tip ? 1 : 0;
     stored.mode = static_cast<std::uint8_t>(input.mode);
     return stored;
 }
@@ -62,6 +64,7 @@ tissue::Input load(const StoredInput& stored) {
         Quat(stored.orientation[0], stored.orientation[1], stored.orientation[2], stored.orientation[3]);
     input.power_setting_W = stored.power_setting_W;
     input.pedal = stored.pedal != 0;
+    input.wipe_tip = stored.wipe_tip != 0;
     input.mode = static_cast<tissue::GeneratorMode>(stored.mode);
     return input;
 }

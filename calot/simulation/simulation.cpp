@@ -69,9 +69,7 @@ void Simulation::world_surface(WorldSurface& out) const {
 double Simulation::energy_imbalance() const {
     const tissue::EnergyBudget& energy = state_.energy_J;
     if (energy.delivered == 0.0) return 0.0;
-    const double accounted = energy.outflow + energy.gas + energy.surface + energy.perfusion + energy.debris +
-                             thermal::stored_J(setup_->model, state_);
-    return (energy.delivered - accounted) / energy.delivered;
+    return (energy.delivered - energy.accounted() - thermal::stored_J(setup_->model, state_)) / energy.delivered;
 }
 
 }  // namespace calot::simulation

@@ -40,7 +40,8 @@ class Simulation {
     /// World positions and deformation gradients of Surface::smooth_mesh()'s vertices. Not for several threads at once.
     void world_surface(WorldSurface& out) const;
 
-    /// delivered - (outflow + gas + surface + perfusion + debris + stored), as a fraction of delivered (0 when none).
+    /// delivered - (outflow + gas + surface + perfusion + debris + tip + stored), as a fraction of delivered (0 when
+    /// none).
     double energy_imbalance() const;
 
   private:

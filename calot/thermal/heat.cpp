@@ -236,13 +236,6 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     return work;
 }
 
-float temperature_K(const tissue::Model& model, const tissue::State& state, std::int64_t hexel) {
-    const auto h = static_cast<std::size_t>(hexel);
-    const PhaseCurve curve = PhaseCurve::make(model.thermal, model.materials[model.hexel_material[h]]);
-    return static_cast<float>(model.thermal.body_temperature_K) +
-           curve.rise_K(state.enthalpy_J_per_m3[h], state.water_kg_per_m3[h]);
-}
-
 void conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work) {
     if (state.tick % model.thermal.refresh_ticks != 0) return;
     const double dt_s = model.tick_s * model.thermal.refresh_ticks / work.substeps;

@@ -49,8 +49,7 @@ struct Work {
 };
 Work make_work(const tissue::Model& model, const tissue::State& state);
 
-/// Temperature of a hexel from its enthalpy and water [K].
-float temperature_K(const tissue::Model& model, const tissue::State& state, std::int64_t hexel);
+using tissue::temperature_K;
 
 /// Every ThermalParameters::refresh_ticks: one step of conduction, surroundings, perfusion, Joule heat
 /// (Exchange::joule), boiling (State::water, GasEvents), damage and peak temperature, with the energy budget. On other

@@ -91,7 +91,8 @@ void settle_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t 
         }
         const bool wet = !step.threshold && water > 0.0f;
         const float capacity = p.dry_capacity_J_per_m3K[m] + water * p.water_capacity_J_per_kgK[m];
-        const float now_K = step.body_K + std::min(enthalpy / capacity, wet ? p.wet_limit_K : p.dry_limit_K[m]);
+        const float now_K =
+            step.body_K + std::min(enthalpy * (1.0f / capacity), wet ? p.wet_limit_K : p.dry_limit_K[m]);
         step.temperature_K[i] = now_K;
         step.peak_temperature_K[i] = std::max(step.peak_temperature_K[i], now_K);
         if (!wet && enthalpy >= p.spent_J_per_m3[m]) sums.spent = true;

@@ -330,7 +330,7 @@ HWY_INLINE void settle_vector(const HeatStep& step, std::int64_t i, Mask mask, S
     F enthalpy = hn::Load(d, step.enthalpy_J_per_m3 + i);
     F water = hn::Load(d, step.water_kg_per_m3 + i);
     F capacity = hn::Add(dry_capacity, hn::Mul(water, water_capacity));
-    const F rise = hn::Div(enthalpy, capacity);
+    const F rise = hn::Mul(enthalpy, hn::Div(number(1.0f), capacity));
     if (HWY_LIKELY(hn::AllTrue(d, hn::Le(rise, number(p.quick_rise_K))))) {
         set_temperature(step, i, mask, hn::Add(number(step.body_K), rise));
         return;
@@ -364,7 +364,7 @@ HWY_INLINE void settle_vector(const HeatStep& step, std::int64_t i, Mask mask, S
         limit = hn::IfThenElse(wet, number(p.wet_limit_K), limit);
         dry = hn::AndNot(wet, mask);
     }
-    const F now_K = hn::Add(number(step.body_K), hn::Min(hn::Div(enthalpy, capacity), limit));
+    const F now_K = hn::Add(number(step.body_K), hn::Min(hn::Mul(enthalpy, hn::Div(number(1.0f), capacity)), limit));
     set_temperature(step, i, mask, now_K);
     if (HWY_UNLIKELY(!hn::AllFalse(d, dry)))
         lanes.spent = hn::Or(lanes.spent, hn::And(dry, hn::Ge(enthalpy, of(p.spent_J_per_m3))));

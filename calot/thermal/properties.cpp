@@ -39,35 +39,6 @@ float transfer_W_per_m2K(double surroundings_W_per_m2K, double conductivity_W_pe
 
 }  // namespace
 
-PhaseCurve PhaseCurve::make(const tissue::ThermalParameters& thermal, const tissue::Material& material) {
-    const double density = material.density_kg_per_m3, alive = density * material.specific_heat_J_per_kgK;
-    const double water = density * material.water_mass_fraction;
-    const double boils_K = thermal.boiling_temperature_K - thermal.body_temperature_K;
-    PhaseCurve curve;
-    if (thermal.phase_model == tissue::PhaseModel::threshold || water <= 0.0) {
-        curve.dry_capacity_J_per_m3K = static_cast<float>(alive);
-    } else {
-        // Water has no negative capacity: should the solids want more than all, they get all.
-        const double dry = std::min(alive, (density - water) * material.dry_specific_heat_J_per_kgK);
-        curve.dry_capacity_J_per_m3K = static_cast<float>(dry);
-        curve.water_capacity_J_per_kgK = static_cast<float>((alive - dry) / water);
-    }
-    if (thermal.phase_model == tissue::PhaseModel::threshold) {
-        curve.dry_limit_K = static_cast<float>(thermal.threshold_temperature_K - thermal.body_temperature_K);
-        curve.wet_limit_K = curve.dry_limit_K;
-    } else {
-        curve.wet_limit_K = static_cast<float>(boils_K);
-        curve.dry_limit_K =
-            static_cast<float>(std::max(boils_K, material.removal_temperature_K - thermal.body_temperature_K));
-    }
-    return curve;
-}
-
-float PhaseCurve::rise_K(float enthalpy_J_per_m3, float water_kg_per_m3) const {
-    const float capacity = dry_capacity_J_per_m3K + water_kg_per_m3 * water_capacity_J_per_kgK;
-    return std::min(enthalpy_J_per_m3 / capacity, water_kg_per_m3 > 0.0f ? wet_limit_K : dry_limit_K);
-}
-
 Properties Properties::make(const tissue::Model& model) {
     const tissue::ThermalParameters& thermal = model.thermal;
     const bool threshold = thermal.phase_model == tissue::PhaseModel::threshold;

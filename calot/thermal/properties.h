@@ -1,19 +1,6 @@
 #pragma once
-// What the heat kernels know of each material, from tissue::Material and ThermalParameters.
-//
-// Capacity. A hexel's volumetric heat capacity is that of its dry solids plus that of the water it still has,
-//
-//     C(w) = rho (1 - f) c_dry + w c_w        f = water mass fraction, w from rho f (alive) to 0 (dry)
-//
-// and must be rho c when alive, c being the published capacity of living tissue. c_dry is given, so c_w follows:
-// c_w = (c - (1 - f) c_dry) / f. The default c_dry are those for which it is water's own 4187 J/(kg K).
-//
-// Phases, as a function of H (counted from body temperature T_0), limits being rises above T_0:
-//
-//     water then solids    T - T_0 = min(H / C(w), wet_limit if w > 0 else dry_limit)
-//                          gas when w = 0 and H >= C(0) dry_limit + solids * their latent heat
-//     threshold            T - T_0 = min(H / (rho c), T_v - T_0);  w falls from alive to 0 along the plateau
-//                          gas when H >= rho (c (T_v - T_0) + f * 2.26e6)
+// What the heat kernels know of each material, from tissue::Material and ThermalParameters. Capacities and phases:
+// tissue/phase.h.
 //
 // Surroundings. h_c acts on the temperature of a face, which is half a cell from a hexel's centre; the two resistances
 // are in series, h = 1 / (1/h_c + s_h / 2k). (With h_c alone, exchange with held tissue would be up to 1.7 times too
@@ -24,6 +11,7 @@
 
 #include "calot/base/array.h"
 #include "calot/tissue/model.h"
+#include "calot/tissue/phase.h"
 
 namespace calot::thermal {
 
@@ -41,17 +29,7 @@ inline constexpr float kDamageLimit = 1e6f;           ///< Omega saturates
 inline constexpr std::uint8_t kMixedGroup = 255;
 inline constexpr int kGroupCells = 16;
 
-/// Temperature of one material as a function of H and w.
-struct PhaseCurve {
-    float dry_capacity_J_per_m3K = 1.0f;    ///< C(0)
-    float water_capacity_J_per_kgK = 0.0f;  ///< c_w
-    float wet_limit_K = 0.0f;               ///< rise above T_0 while there is water
-    float dry_limit_K = 0.0f;               ///< and without
-
-    static PhaseCurve make(const tissue::ThermalParameters& thermal, const tissue::Material& material);
-    /// T - T_0. Kernels do the same operations in the same order.
-    float rise_K(float enthalpy_J_per_m3, float water_kg_per_m3) const;
-};
+using tissue::PhaseCurve;
 
 struct Properties {
     template <class T>

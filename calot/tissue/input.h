@@ -21,6 +21,7 @@ struct Input {
     bool pedal = false;
     GeneratorMode mode = GeneratorMode::cut;
     double power_setting_W = 0.0;
+    bool wipe_tip = false;  ///< the char on the hook is wiped off
 };
 
 }  // namespace calot::tissue

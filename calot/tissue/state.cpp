@@ -14,6 +14,7 @@ State State::make(const Model& model) {
     }
     state.phyxel_present = model.phyxel_initial;
     state.hexel_present = model.hexel_initial;
+    state.tip.temperature_K = model.thermal.body_temperature_K;
     state.enthalpy_J_per_m3.assign(hexels, 0.0f);
     state.water_kg_per_m3.assign(hexels, 0.0f);
     state.peak_temperature_K.assign(hexels, static_cast<float>(model.thermal.body_temperature_K));
@@ -75,6 +76,7 @@ std::vector<Field> fields(State& s) {
     all.push_back(scalar_field("field_low", s.field_low));
     all.push_back(array_field("potential", s.potential));
     all.push_back(scalar_field("generator", s.generator));
+    all.push_back(scalar_field("tip", s.tip));
     all.push_back(scalar_field("energy", s.energy_J));
     all.push_back(scalar_field("hexels_burnt", s.hexels_burnt));
     all.push_back(scalar_field("hexels_fallen", s.hexels_fallen));

@@ -29,8 +29,20 @@ struct EnergyBudget {
     double surface = 0.0;    ///< to gas and held tissue by convection
     double perfusion = 0.0;  ///< to blood
     double debris = 0.0;     ///< left with crumbs that fell
+    double tip = 0.0;        ///< net, from tissue into the hook's bare wire
+    double transit = 0.0;    ///< under way between hexels of which one has still to take its part in the heat step;
+                             ///< zero between heat steps
     // stored (sum of enthalpy) is computed when asked for; the imbalance is
-    // delivered - outflow - gas - surface - perfusion - debris - stored.
+    // delivered - accounted() - stored.
+    double accounted() const { return outflow + gas + surface + perfusion + debris + tip + transit; }
+};
+
+/// The bare wire of the hook, as one lump of steel.
+struct TipState {
+    double temperature_K = 310.15;  ///< of the wire
+    double char_kg = 0.0;           ///< burnt tissue that sticks to it
+    double heat_W = 0.0;            ///< net, from tissue into the wire during the last heat step; negative: it heats tissue
+    double lost_J = 0.0;            ///< since the start: from the wire to gas and up the shaft
 };
 
 /// What the generator and the hook are doing.
@@ -71,6 +83,7 @@ struct State {
                                                      ///< in Model::hexels (its fastest axis fastest)
 
     GeneratorState generator;
+    TipState tip;                                    ///< written by thermal
     EnergyBudget energy_J;
     std::int64_t hexels_burnt = 0;                   ///< gasified
     std::int64_t hexels_fallen = 0;                  ///< in crumbs that came loose

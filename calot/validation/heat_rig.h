@@ -123,8 +123,7 @@ struct HeatRun {
     /// Share of the delivered energy that the budget loses.
     double imbalance() const {
         const tissue::EnergyBudget& e = state.energy_J;
-        return (e.delivered - e.outflow - e.gas - e.surface - e.perfusion - e.debris - stored_J(model, state)) /
-               e.delivered;
+        return (e.delivered - e.accounted() - stored_J(model, state)) / e.delivered;
     }
 };
 
