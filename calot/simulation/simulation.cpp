@@ -18,6 +18,22 @@ tissue::State make_initial_state(const tissue::Model& model) {
     return state;
 }
 
+/// The state, if it can be gone on from.
+tissue::State checked(const tissue::Model& model, tissue::State state) {
+    tissue::State fresh = tissue::State::make(model);
+    const std::vector<tissue::Field> expected = tissue::fields(fresh), found = tissue::fields(state);
+    for (std::size_t f = 0; f < expected.size(); ++f)
+        if (expected[f].bytes != found[f].bytes)
+            throw InputError("the state's field \"" + std::string(expected[f].name) + "\" has " +
+                                 std::to_string(found[f].bytes) + " bytes, the scene's " +
+                                 std::to_string(expected[f].bytes),
+                             "go on with the scene that the state was saved from");
+    if (state.tick % model.frame_ticks != 0)
+        throw InputError("the state was taken at tick " + std::to_string(state.tick) + ", in the middle of a frame",
+                         "save states at ticks that are multiples of " + std::to_string(model.frame_ticks));
+    return state;
+}
+
 }  // namespace
 
 Work::Work(const tissue::Model& model, const tissue::State& state, const instruments::HookShape& hook,
@@ -38,6 +54,11 @@ Work::Work(const tissue::Model& model, const tissue::State& state, const instrum
 Simulation::Simulation(std::shared_ptr<const Setup> setup)
     : setup_(std::move(setup)),
       state_(make_initial_state(setup_->model)),
+      work_(setup_->model, state_, setup_->hook, setup_->smoke) {}
+
+Simulation::Simulation(std::shared_ptr<const Setup> setup, tissue::State state)
+    : setup_(std::move(setup)),
+      state_(checked(setup_->model, std::move(state))),
       work_(setup_->model, state_, setup_->hook, setup_->smoke) {}
 
 bool Simulation::tick(const tissue::Input& input) {

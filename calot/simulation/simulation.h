@@ -26,6 +26,11 @@ class Simulation {
   public:
     explicit Simulation(std::shared_ptr<const Setup> setup);
 
+    /// Goes on from a state that a simulation of the same setup had, at a tick that is a multiple of
+    /// Model::frame_ticks: bit for bit as that one did. What is not part of the state (smoke) starts anew. Throws
+    /// InputError when the state does not fit the model or was taken in the middle of a frame.
+    Simulation(std::shared_ptr<const Setup> setup, tissue::State state);
+
     /// One step of Model::tick_s. Returns false, and does nothing more, once State::status is not ok.
     bool tick(const tissue::Input& input);
 

@@ -100,6 +100,9 @@ struct Model {
     ContactParameters contact;
 
     double tick_s = 1e-3;
+    /// Period of the schedule that spreads work over ticks. At ticks that are multiples of it State is complete: a run
+    /// that is saved there goes on bit for bit. In between, what is half done lies in the rooms' Work.
+    static constexpr int frame_ticks = 8;
 
     int hexels_per_phyxel() const { return hexels_per_edge * hexels_per_edge * hexels_per_edge; }
     double hexel_volume_m3() const { return hexels.spacing_m * hexels.spacing_m * hexels.spacing_m; }
