@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/program.h"
+#include "support/paths.h"
 
 namespace calot::test {
 namespace {

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "support/paths.h"
+
 extern char** environ;
 
 namespace calot::test {

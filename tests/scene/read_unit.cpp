@@ -9,6 +9,7 @@
 #include "calot/base/error.h"
 #include "calot/scene/keys.h"
 #include "calot/scene/scene.h"
+#include "support/paths.h"
 
 namespace calot::scene {
 namespace {
