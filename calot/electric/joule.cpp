@@ -68,53 +68,24 @@ void find_heat(const tissue::Model& model, const tissue::State& state, Work& wor
     work.electrode_conductance_S *= spacing;
 }
 
-namespace {
-
-/// One plane of the window, transposed: `to` has x along its second axis' unit steps.
-///     from[x * from_step + a]  ->  to[x + a * to_step]
-/// Eight values of a at a time, so that each line of memory is written from end to end while it is at hand.
-void transpose(const float* from, std::int64_t from_step, int count_x, int count_a, float scale, float* to,
-               std::int64_t to_step) {
-    constexpr int kTile = 8;
-    for (int low = 0; low < count_a; low += kTile) {
-        const int high = std::min(low + kTile, count_a);
-        for (int x = 0; x < count_x; ++x)
-            for (int a = low; a < high; ++a) to[x + a * to_step] = scale * from[x * from_step + a];
-    }
-}
-
-}  // namespace
-
 void write_heat(const tissue::Model& model, tissue::Exchange& exchange, Work& work, double voltage_V) {
     tissue::JouleHeat& joule = exchange.joule;
     if (joule.density_W_per_m3.size() < work.joule_W_per_m3.size()) joule.density_W_per_m3.swap(work.joule_W_per_m3);
     const Level& fine = work.grid.levels[0];
     const Window& window = work.window;
-    joule.low = window.to_hexel(window.begin);
-    joule.size = window.to_hexel(window.end) - joule.low;
-    // Per volt squared and spacing -> W/m^3.
+    joule.place(model.hexels, window.to_hexel(window.begin),
+                window.to_hexel(window.end) - window.to_hexel(window.begin));
+    // Per volt squared and spacing -> W/m^3. The window's axes are in the order of the lattice's.
     const double spacing = model.hexels.spacing_m;
     const auto scale = static_cast<float>(voltage_V * voltage_V / (spacing * spacing));
-    // Steps along each window axis: in the window, and in the box, where x is fastest.
-    const std::array<std::int64_t, 3> from_step{1, fine.row, fine.plane},
-        box_step{1, joule.size.x, std::int64_t{joule.size.x} * joule.size.y};
-    std::array<std::int64_t, 3> to_step{};
-    for (int k = 0; k < 3; ++k)
-        to_step[static_cast<std::size_t>(k)] = box_step[static_cast<std::size_t>(window.axis[k])];
     const Int3 count = window.end - window.begin;
-    const float* from = fine.solution.data() + fine.index(window.begin.x, window.begin.y, window.begin.z);
     float* to = joule.density_W_per_m3.data();
-    if (window.axis.x == 0) {
-        for (int c = 0; c < count.z; ++c)
-            for (int b = 0; b < count.y; ++b)
-                for (int a = 0; a < count.x; ++a)
-                    to[a + b * to_step[1] + c * to_step[2]] = scale * from[a + b * from_step[1] + c * from_step[2]];
-        return;
-    }
-    const std::size_t x = window.axis.y == 0 ? 1 : 2, other = 3 - x;
-    for (int n = 0; n < count[static_cast<int>(other)]; ++n)
-        transpose(from + n * from_step[other], from_step[x], count[static_cast<int>(x)], count.x, scale,
-                  to + n * to_step[other], to_step[0]);
+    for (int c = 0; c < count.z; ++c)
+        for (int b = 0; b < count.y; ++b, to += count.x) {
+            const float* from =
+                fine.solution.data() + fine.index(window.begin.x, window.begin.y + b, window.begin.z + c);
+            for (int a = 0; a < count.x; ++a) to[a] = scale * from[a];
+        }
 }
 
 }  // namespace calot::electric

@@ -68,7 +68,7 @@ Window joule_window(const Lattice& lattice, const tissue::JouleHeat& joule) {
 /// Adds q dt to one plane of the window, tile by tile. Returns what was added [J/m^3].
 double deposit_plane(const tissue::Model& model, const tissue::State& state, const HeatStep& step,
                      const tissue::JouleHeat& joule, const Window& w, int plane) {
-    const Int3 source_stride(1, joule.size.x, joule.size.x * joule.size.y);
+    const Int3 source_stride = joule.stride;
     const std::ptrdiff_t fast_step = source_stride[w.fast], middle_step = source_stride[w.middle];
     double added = 0.0;
     Int3 cell = w.low;
@@ -81,9 +81,7 @@ double deposit_plane(const tissue::Model& model, const tissue::State& state, con
             std::uint32_t present = 0;
             for (int row = 0; row < rows; ++row) present |= state.hexel_present.bits32(first + row * stride);
             if ((present & ((1u << columns) - 1u)) == 0) continue;
-            const Int3 in_window = cell - joule.low;
-            const float* source = joule.density_W_per_m3.data() + in_window.x + in_window.y * source_stride.y +
-                                  std::ptrdiff_t{in_window.z} * source_stride.z;
+            const float* source = joule.density_W_per_m3.data() + joule.index(cell);
             alignas(64) HeatTile tile = {};
             for (int k = 0; k < columns; ++k)
                 for (int row = 0; row < rows; ++row) tile[row][k] = source[k * fast_step + row * middle_step];

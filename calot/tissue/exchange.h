@@ -51,11 +51,20 @@ struct GasEvent {
 /// Joule heat in a box of hexels, from the last electric solve. Empty (size 0) when no current flows.
 struct JouleHeat {
     Int3 low{0};                    ///< hexel coordinates of the box's low corner
-    Int3 size{0};                   ///< x fastest in `density`
+    Int3 size{0};
+    Int3 stride{0};                 ///< offset in `density` of one step along x, y, z; rows lie as in Model::hexels
     Array<float> density_W_per_m3;  ///< [size.x * size.y * size.z], scaled to the present power
     double total_W = 0.0;           ///< sum of density * hexel volume
     double outflow_W = 0.0;         ///< dissipated outside the tissue's hexels, in held organs and beyond the window;
                                     ///< the generator delivers total_W + outflow_W
+
+    /// Place in `density` of a hexel in the box.
+    std::int64_t index(const Int3& hexel) const {
+        const Int3 c = hexel - low;
+        return std::int64_t{c.x} * stride.x + std::int64_t{c.y} * stride.y + std::int64_t{c.z} * stride.z;
+    }
+    /// Sets low, size and stride, with the axes in the order of a lattice's, fastest first.
+    void place(const Lattice& lattice, const Int3& low_corner, const Int3& extent);
 };
 
 struct Exchange {

@@ -112,13 +112,15 @@ struct HeatRun {
     /// Joule heat in a box of hexels.
     void set_joule(const Int3& low, const Int3& size, const std::function<double(const Int3&)>& density_W_per_m3) {
         tissue::JouleHeat& joule = exchange.joule;
-        joule.low = low;
-        joule.size = size;
-        joule.density_W_per_m3.clear();
+        joule.place(model.hexels, low, size);
+        joule.density_W_per_m3.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y * size.z));
         for (int z = 0; z < size.z; ++z)
             for (int y = 0; y < size.y; ++y)
-                for (int x = 0; x < size.x; ++x)
-                    joule.density_W_per_m3.push_back(static_cast<float>(density_W_per_m3(low + Int3(x, y, z))));
+                for (int x = 0; x < size.x; ++x) {
+                    const Int3 cell = low + Int3(x, y, z);
+                    joule.density_W_per_m3[static_cast<std::size_t>(joule.index(cell))] =
+                        static_cast<float>(density_W_per_m3(cell));
+                }
     }
     /// Share of the delivered energy that the budget loses.
     double imbalance() const {

@@ -22,8 +22,7 @@ double sum_of_density_W(const Rig& rig) {
 
 float density_at(const Rig& rig, const Int3& hexel) {
     const tissue::JouleHeat& joule = rig.exchange.joule;
-    const Int3 c = hexel - joule.low;
-    return joule.density_W_per_m3[static_cast<std::size_t>(c.x + joule.size.x * (c.y + joule.size.y * c.z))];
+    return joule.density_W_per_m3[static_cast<std::size_t>(joule.index(hexel))];
 }
 
 /// Takes away a share of the hexels and scales the conductivity of the others by up to 1e4.

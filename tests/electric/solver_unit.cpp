@@ -69,9 +69,7 @@ TEST(Solver, TissueApartFromTheMetalStaysCold) {
         for (int y = 9; y < 15; ++y)
             for (int x = 9; x < 15; ++x) {
                 const tissue::JouleHeat& joule = rig.exchange.joule;
-                const Int3 c = Int3(x, y, z) - joule.low;
-                heat += static_cast<double>(
-                    joule.density_W_per_m3[static_cast<std::size_t>(c.x + joule.size.x * (c.y + joule.size.y * c.z))]);
+                heat += static_cast<double>(joule.density_W_per_m3[static_cast<std::size_t>(joule.index({x, y, z}))]);
             }
     EXPECT_LT(heat * rig.model.hexel_volume_m3(), 1e-9 * rig.exchange.joule.total_W);
 }
