@@ -4,6 +4,7 @@
 
 #include "calot/base/error.h"
 #include "calot/haptics/hd_api.h"
+#include "calot/haptics/network.h"
 #include "calot/haptics/openhaptics.h"
 
 namespace calot::haptics {
@@ -12,14 +13,16 @@ std::unique_ptr<HapticDevice> make_device(const DeviceChoice& choice) {
     if (choice.kind == "simulated") return std::make_unique<SimulatedDevice>(choice.script);
     if (choice.kind == "openhaptics")
         return std::make_unique<OpenHapticsDevice>(choice.openhaptics_device, choice.openhaptics_library);
+    if (choice.kind == "network") return std::make_unique<NetworkDevice>(choice.network);
     if (choice.kind == "auto") {
         std::string why;
         if (hd::load(choice.openhaptics_library, why) == nullptr)
             throw InputError(fmt::format("no haptic device: {}", why),
-                             "install OpenHaptics and its driver, or choose --device simulated");
+                             "install OpenHaptics and its driver, or choose the device simulated or network");
         return std::make_unique<OpenHapticsDevice>(choice.openhaptics_device, choice.openhaptics_library);
     }
-    throw InputError(fmt::format("'{}' is no haptic device", choice.kind), "choose auto, openhaptics or simulated");
+    throw InputError(fmt::format("'{}' is no haptic device", choice.kind),
+                     "choose auto, openhaptics, simulated or network");
 }
 
 std::vector<ListedDevice> list_devices(const std::string& openhaptics_library) {
@@ -38,6 +41,7 @@ std::vector<ListedDevice> list_devices(const std::string& openhaptics_library) {
         devices.push_back({"openhaptics", why, false});
     }
     devices.push_back({"simulated", "a spring-damper hand that presses and releases", true});
+    devices.push_back({"network", "listens for other hardware once it is chosen", true});
     return devices;
 }
 

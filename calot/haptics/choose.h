@@ -6,14 +6,16 @@
 #include <vector>
 
 #include "calot/haptics/device.h"
+#include "calot/haptics/network.h"
 #include "calot/haptics/simulated.h"
 
 namespace calot::haptics {
 
 struct DeviceChoice {
-    std::string kind = "auto";        ///< "auto", "openhaptics", "simulated"
+    std::string kind = "auto";        ///< "auto", "openhaptics", "simulated", "network"
     std::string openhaptics_device;   ///< name in its configuration; empty: the default device
     std::string openhaptics_library;  ///< path of libHD.so; empty: where it is customarily found
+    NetworkOptions network;
     std::vector<HandKey> script = press_and_release(0.01, 4.0);  ///< of the simulated hand
 };
 

@@ -27,14 +27,16 @@ Vec3 PassivityControl::limit(const Vec3& wanted_N, const Vec3& velocity_m_per_s,
         return force_N_;
     }
     wanted_N_ = force_N_ = wanted_N;
-    // a s^2 + b s <= tank
-    const double safety = parameters_.safety, along = glm::dot(wanted_N, velocity_m_per_s) * dt_s;
-    const double a = safety * 0.5 * strength_N * strength_N * dt_s * dt_s / mass_kg;
-    const double b = (along > 0.0 ? safety * along : along / safety) +
-                     0.5 * parameters_.hand_acceleration_m_per_s2 * dt_s * dt_s * strength_N;
-    const double tank_J = std::max(0.0, tank_J_);
-    if (a + b <= tank_J) return force_N_;
-    const double share = std::clamp((-b + std::sqrt(b * b + 4.0 * a * tank_J)) / (2.0 * a), 0.0, 1.0);
+    const double along_J = glm::dot(wanted_N, velocity_m_per_s) * dt_s;
+    double share = 1.0;
+    if (along_J > 0.0) share = std::clamp(tank_J_ / (parameters_.safety * along_J), 0.0, 1.0);
+    // a s^2 + b s <= tank + start
+    const double a = 0.5 * strength_N * strength_N * dt_s * dt_s / mass_kg;
+    const double b = along_J + 0.5 * parameters_.hand_acceleration_m_per_s2 * dt_s * dt_s * strength_N;
+    const double purse_J = std::max(0.0, tank_J_ + parameters_.start_J);
+    if (a + b > purse_J)
+        share = std::min(share, std::max(0.0, (-b + std::sqrt(b * b + 4.0 * a * purse_J)) / (2.0 * a)));
+    if (share == 1.0) return force_N_;
     ++limited_;
     force_N_ = share * wanted_N;
     return force_N_;

@@ -12,13 +12,15 @@
 // differ: the step, when it comes, is booked with their mean. With the last force alone, pressing and releasing 5 kPa
 // fat seemed to return a quarter more than it took.
 //
-// Controller: the force of the coming step is scaled by the greatest s in [0, 1] whose work the tank can pay,
+// Controller: the force of the coming step is scaled by the greatest s in [0, 1] whose work can be paid,
 //
-//     s f . v dt + 1/2 a dt^2 |s f| + 1/2 |s f|^2 dt^2 / m  <=  tank,
+//     expected movement     s f . v dt * safety                                         <=  tank
+//     any movement          s f . v dt + 1/2 a dt^2 |s f| + 1/2 |s f|^2 dt^2 / m        <=  tank + start
 //
-// where the second term is a hand that accelerates by a meanwhile and the third the device that the force itself
-// accelerates. Departure from the damper of the sources: scaling needs no division by a noisy velocity, and it acts
-// before the energy is gone instead of after.
+// In the second line the hand accelerates by `a` meanwhile and the device by the force itself. Passivity allows a fixed
+// energy at the start; here it only ever pays for the unexpected. Without it, a hand that comes slowly would get no
+// force, so put in no energy, so get no force. Departure from the damper of the sources: scaling needs no division by a
+// noisy velocity, and it acts before the energy is gone instead of after.
 //
 // The capacity is the second departure: energy that tissue dissipated would otherwise pile up as a licence to be active
 // later.
@@ -30,9 +32,10 @@
 namespace calot::haptics {
 
 struct PassivityParameters {
-    double capacity_J = 0.05;                  ///< chosen: 2.5 times what 3.3 N store in coupling and organ
-    double hand_acceleration_m_per_s2 = 10.0;  ///< a; chosen: quick movements of a surgeon's hand stay below
-    double safety = 2.0;                       ///< of predicted outflow: velocities are estimates
+    double capacity_J = 0.05;                 ///< chosen: 2.5 times what 3.3 N store in coupling and organ
+    double hand_acceleration_m_per_s2 = 5.0;  ///< a; chosen: surgeons' hands rarely go beyond
+    double start_J = 20e-6;                   ///< chosen: too little to notice, it lifts 2 g by 1 mm
+    double safety = 2.0;                      ///< of predicted outflow: velocities are estimates
 };
 
 class PassivityControl {

@@ -11,9 +11,8 @@ namespace calot::haptics {
 
 namespace {
 
-/// Below this the hand got nothing that it could notice: what 5 kPa fat stores at 1 mm of indentation is ten times as
-/// much. 0.7 uJ seen.
-constexpr double kLeastEnergy_J = -2e-6;
+/// What the passivity controller may give before it took anything.
+const double kLeastEnergy_J = -PassivityParameters{}.start_J;
 
 HandParameters exact_hand() {
     HandParameters hand;
@@ -95,6 +94,27 @@ TEST(Wall, StopsTheInstrumentAndHoldsStill) {
         EXPECT_LT(greatest_N - least_N, 0.08) << "three steps of the encoder";
         EXPECT_GE(rig.session().status().servo.least_absorbed_J, kLeastEnergy_J);
     }
+}
+
+// The pedal is the stylus' first button: the fat under the hook burns away and the push is gone.
+TEST(Cut, TakesTheForceAway) {
+    const std::vector<HandKey> script{{0.0, Vec3(0.0)},
+                                      {0.4, Vec3(0.0, -9e-3, 0.0)},
+                                      {0.7, Vec3(0.0, -9e-3, 0.0), 1},
+                                      {2.2, Vec3(0.0, -9e-3, 0.0), 0}};
+    Rig rig(fat_setup(), script, Vec3(0.0, 0.0, 3e-3));
+    rig.input().mode = tissue::GeneratorMode::cut;
+    rig.input().power_setting_W = 60.0;
+    double before_N = 0.0, after_N = 0.0;
+    for (int k = 0; k < 2300; ++k) {
+        const Moment& m = rig.tick();
+        ASSERT_EQ(m.servo.fault, Fault::none);
+        if (k == 690) before_N = m.servo.device_force_N.y;
+        if (k == 2290) after_N = m.servo.device_force_N.y;
+    }
+    EXPECT_GT(rig.simulation().state().hexels_burnt, 50);
+    EXPECT_GT(before_N, 0.08);
+    EXPECT_LT(after_N, 0.4 * before_N);
 }
 
 }  // namespace calot::haptics

@@ -26,7 +26,15 @@ inline std::shared_ptr<simulation::Setup> fat_setup() {
     return setup;
 }
 
-/// The same with a rigid wall over half of it, x > 0, whose top is at z = 0 too.
+/// A smaller block, for what needs no depth.
+inline std::shared_ptr<simulation::Setup> small_setup() {
+    auto setup = std::make_shared<simulation::Setup>();
+    setup->anatomy = anatomy::make_block({.size_m = Vec3(0.0192, 0.0192, 0.0144)});
+    setup->model = tissue::sample(setup->anatomy, {});
+    return setup;
+}
+
+/// One with a rigid wall beside it, x > 10 mm, whose top is at z = 0 too.
 inline std::shared_ptr<simulation::Setup> wall_setup() {
     auto setup = std::make_shared<simulation::Setup>();
     setup->anatomy = anatomy::make_block({.size_m = Vec3(0.0144, 0.0144, 0.0096)});
