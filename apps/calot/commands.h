@@ -60,4 +60,15 @@ struct ReplayOptions {
 };
 int replay(const ReplayOptions& options);
 
+struct ViewOptions {
+    SceneChoice scene;     ///< path empty: the standard patient
+    std::string start;     ///< exercise to begin with at once
+    std::string language;  ///< empty: as in the settings
+    std::string pictures = ".";
+    int width = 1280, height = 800;
+    bool fullscreen = false;
+    int threads = 0;  ///< for the physics; 0: as fits the machine
+};
+int view(const ViewOptions& options);
+
 }  // namespace calot::app

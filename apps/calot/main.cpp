@@ -20,6 +20,7 @@ Examples:
   calot simulate scenes/block.toml --duration 1 --frames none
   calot simulate scenes/block.toml --set electric.voltage_limit_V=200 --set materials.fat.youngs_modulus_kPa=8
   calot inspect scenes/calot.toml                       what the scene is made of
+  calot view                                            operate on the standard patient, in a window
   calot replay out/calot/recording.calot --verify       run it again and compare bit for bit
   calot scene --defaults                                every key that a scene may have
 
@@ -87,6 +88,24 @@ void add_output_options(CLI::App& command, OutputChoice& output) {
                      "Replace the output directory if it exists, once the new one is complete");
 }
 
+void add_view_options(CLI::App& command, ViewOptions& options) {
+    add_scene_options(command, options.scene);
+    command.get_option("scene")->required(false);
+    command.add_option("--start", options.start, "Begin with this exercise instead of the start screen")
+        ->type_name("ID");
+    command.add_option("--language", options.language, "Language of the texts, as in data/lang")->type_name("NAME");
+    command.add_option("--pictures", options.pictures, "Where F12 puts pictures of the window")->type_name("DIR");
+    command.add_option("--width", options.width, "Of the window, pixels")->type_name("N")->check(CLI::Range(640, 16384));
+    command.add_option("--height", options.height, "Of the window, pixels")
+        ->type_name("N")
+        ->check(CLI::Range(420, 16384));
+    command.add_flag("--fullscreen", options.fullscreen, "Over the whole screen");
+    command.add_option("--threads", options.threads, "Threads for the physics; 0: as fits the machine")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1024));
+    command.footer("\nWithout SCENE it opens the standard patient. F1 in the window shows the controls.");
+}
+
 int run(int argc, char** argv) {
     CLI::App app("Calot simulates electrosurgery on soft tissue in real time.", "calot");
     app.footer(kExamples);
@@ -121,6 +140,11 @@ int run(int argc, char** argv) {
     add_output_options(*replay_command, replay_options.output);
     replay_command->footer(std::string("\nWithout --out nothing is written.\n") + kExamples);
     replay_command->callback([&] { code = replay(replay_options); });
+
+    ViewOptions view_options;
+    CLI::App* view_command = app.add_subcommand("view", "Open the trainer: operate in a window");
+    add_view_options(*view_command, view_options);
+    view_command->callback([&] { code = view(view_options); });
 
     bool defaults = false;
     CLI::App* scene_command = app.add_subcommand("scene", "About scene files");

@@ -10,9 +10,9 @@
 #include "calot/base/parallel.h"
 #include "calot/base/units.h"
 #include "calot/simulation/recording.h"
+#include "calot/viewer/picture.h"
 #include "interrupt.h"
 #include "output_directory.h"
-#include "picture.h"
 #include "progress.h"
 #include "report.h"
 #include "summary.h"
@@ -75,7 +75,7 @@ class Outputs {
     OutputDirectory directory_;
     simulation::RecordingWriter recording_;
     SurfaceSeries series_;
-    std::optional<Picture> picture_;
+    std::optional<viewer::Picture> picture_;
     Frames frames_;  // last: its thread must be gone before what it draws
 };
 

@@ -1,8 +1,8 @@
-#include "picture.h"
+#include "calot/viewer/picture.h"
 
 #include "calot/render/scene_view.h"
 
-namespace calot::app {
+namespace calot::viewer {
 
 Picture::Picture(const simulation::Setup& setup) : organs_(render::organ_meshes(setup.model)) {
     camera_.eye_m = setup.camera.eye_m;
@@ -29,4 +29,4 @@ void Picture::fill(const simulation::Simulation& run, const tissue::Input& input
     view.smoke = run.work().smoke.particles();
 }
 
-}  // namespace calot::app
+}  // namespace calot::viewer

@@ -6,7 +6,7 @@
 #include "calot/render/view.h"
 #include "calot/simulation/simulation.h"
 
-namespace calot::app {
+namespace calot::viewer {
 
 /// What stays the same from picture to picture.
 class Picture {
@@ -22,4 +22,4 @@ class Picture {
     simulation::WorldSurface world_;
 };
 
-}  // namespace calot::app
+}  // namespace calot::viewer

@@ -1,0 +1,62 @@
+// `calot view`: the trainer's window.
+
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "calot/base/parallel.h"
+#include "calot/viewer/data_files.h"
+#include "calot/window/trainer.h"
+#include "commands.h"
+
+namespace calot::app {
+
+namespace {
+
+/// Physics has a core of its own and drawing another; more than a few threads do not help a tick this short.
+int physics_threads(int wanted) {
+    if (wanted > 0) return wanted;
+    const int cores = static_cast<int>(std::thread::hardware_concurrency());
+    return std::max(1, std::min(4, cores - 2));
+}
+
+/// Mesa's software renderer would take every core; one stays with the physics. Graphics processors ignore this.
+void leave_a_core() {
+    const unsigned cores = std::thread::hardware_concurrency();
+    if (cores > 1) ::setenv("LP_NUM_THREADS", std::to_string(std::min(16u, cores - 1)).c_str(), 0);
+}
+
+}  // namespace
+
+int view(const ViewOptions& options) {
+    const std::string path = options.scene.path.empty() ? viewer::scene_file("calot.toml") : options.scene.path;
+    SceneChoice standard = options.scene;
+    standard.path = path;
+    const scene::Scene checked = load_scene(standard);  // a bad scene is told before a window opens
+
+    window::TrainerOptions trainer;
+    trainer.patients = checked.kind == scene::AnatomyKind::calots_triangle && !options.scene.seed;
+    trainer.make_scene = [standard, &options](const window::SceneWish& wish) {
+        SceneChoice choice = standard;
+        if (!wish.scene.empty()) choice.path = viewer::scene_file(wish.scene);
+        choice.assignments = wish.assignments;
+        if (wish.scene.empty())  // the command line has the last word
+            choice.assignments.insert(choice.assignments.end(), options.scene.assignments.begin(),
+                                      options.scene.assignments.end());
+        if (wish.any_patient) choice.seed = wish.seed;
+        return load_scene(choice);
+    };
+    trainer.exercises.push_back(viewer::free_practice());
+    trainer.start = options.start;
+    trainer.language = options.language;
+    trainer.pictures = options.pictures;
+    trainer.width = options.width;
+    trainer.height = options.height;
+    trainer.fullscreen = options.fullscreen;
+    leave_a_core();
+    const ThreadLimit limit(physics_threads(options.threads));
+    window::run_trainer(trainer);
+    return kDone;
+}
+
+}  // namespace calot::app

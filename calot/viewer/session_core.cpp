@@ -1,0 +1,99 @@
+#include "calot/viewer/session_core.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace calot::viewer {
+
+namespace {
+
+constexpr double kBoilingTime_s = 0.08;  ///< over which the sizzle is averaged
+
+Vec3 landmark_or(const anatomy::Anatomy& anatomy, const char* name, const Vec3& otherwise) {
+    const auto found = anatomy.landmarks_m.find(name);
+    return found != anatomy.landmarks_m.end() ? found->second : otherwise;
+}
+
+}  // namespace
+
+Theatre theatre_of(const simulation::Setup& setup) {
+    Theatre theatre;
+    const Vec3 centre_m = setup.camera.target_m;
+    theatre.right.centre_m = theatre.left.centre_m = centre_m;
+    theatre.right.port_m = setup.script.trocar_m();
+    // The left hand's port lies on the other side, lower: in the right upper abdomen, where the surgeon's left hand is.
+    const Vec3 across = theatre.right.port_m - centre_m;
+    theatre.left.port_m =
+        landmark_or(setup.anatomy, "grasper_trocar", centre_m + Vec3(-across.x, 0.6 * across.y, across.z));
+    const auto& keys = setup.script.keyframes();
+    if (!keys.empty()) {
+        theatre.right_start.tip_m = within_reach(keys.front().tip_m, theatre.right);
+        theatre.right_start.roll_rad = keys.front().roll_rad;
+    } else {
+        theatre.right_start.tip_m = within_reach(centre_m + Vec3(0.015, 0.008, 0.03), theatre.right);
+    }
+    theatre.left_start.tip_m = within_reach(centre_m + Vec3(-0.025, 0.012, 0.028), theatre.left);
+    return theatre;
+}
+
+SessionCore::SessionCore(std::unique_ptr<simulation::Simulation> run, std::vector<std::shared_ptr<Observer>> observers)
+    : run_(std::move(run)),
+      observers_(std::move(observers)),
+      theatre_(theatre_of(run_->setup())),
+      right_(theatre_.right_start),
+      left_(theatre_.left_start),
+      picture_(run_->setup()) {
+    input_.hook = right_.pose(theatre_.right.port_m, run_->setup().hook);
+    for (const auto& observer : observers_) observer->begin(*run_);
+}
+
+void SessionCore::end() {
+    if (std::exchange(ended_, true)) return;
+    for (const auto& observer : observers_) observer->end(*run_);
+}
+
+tissue::Input SessionCore::input_for(const Controls& controls) {
+    const double dt_s = run_->model().tick_s;
+    right_.advance({within_reach(controls.right.tip_m, theatre_.right), controls.right.roll_rad, controls.right.closed},
+                   run_->state().hook_force_N, dt_s);
+    tissue::Input input;
+    input.hook = right_.pose(theatre_.right.port_m, run_->setup().hook);
+    // Both pedals at once: cutting wins, as on generators.
+    input.pedal = controls.yellow || controls.blue;
+    input.mode = controls.yellow ? (controls.blended_cut ? tissue::GeneratorMode::blend : tissue::GeneratorMode::cut)
+                                 : tissue::GeneratorMode::coag;
+    input.power_setting_W = controls.yellow ? controls.cut_W : controls.blue ? controls.coag_W : 0.0;
+    return input;
+}
+
+bool SessionCore::tick(const Controls& controls) {
+    input_ = input_for(controls);
+    const bool ok = run_->tick(input_);
+    double gas_kg = 0.0;
+    for (const tissue::GasEvent& event : run_->work().exchange.gas)
+        gas_kg += static_cast<double>(event.steam_kg) + static_cast<double>(event.smoke_kg);
+    const double dt_s = run_->model().tick_s;
+    boiling_kg_per_s_ += (gas_kg / dt_s - boiling_kg_per_s_) * dt_s / kBoilingTime_s;
+    for (const auto& observer : observers_) observer->after_tick(*run_, input_);
+    return ok;
+}
+
+void SessionCore::fill(Snapshot& snapshot) {
+    const tissue::State& state = run_->state();
+    picture_.fill(*run_, input_, snapshot.view);
+    snapshot.tick = state.tick;
+    snapshot.time_s = run_->time_s();
+    snapshot.generator = state.generator;
+    snapshot.input = input_;
+    snapshot.hook_force_N = state.hook_force_N;
+    snapshot.tip_m = right_.tip_m();
+    snapshot.boiling_kg_per_s = boiling_kg_per_s_;
+    snapshot.status = state.status;
+    snapshot.hottest_K = 310.15f;
+    for (const tissue::NearHexel& near : run_->work().exchange.near)
+        if (near.bare_gap_m < 1e-3f)
+            snapshot.hottest_K =
+                std::max(snapshot.hottest_K, run_->work().thermal.temperature_K[static_cast<std::size_t>(near.hexel)]);
+}
+
+}  // namespace calot::viewer

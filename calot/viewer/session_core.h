@@ -1,0 +1,54 @@
+#pragma once
+// A session without its clock and its thread: hands and physics tick by tick, snapshots on demand.
+
+#include <memory>
+#include <vector>
+
+#include "calot/simulation/simulation.h"
+#include "calot/viewer/controls.h"
+#include "calot/viewer/hand.h"
+#include "calot/viewer/observer.h"
+#include "calot/viewer/picture.h"
+#include "calot/viewer/snapshot.h"
+
+namespace calot::viewer {
+
+/// Where the hands' ports are and how far they reach, for a scene.
+struct Theatre {
+    Reach right, left;
+    HandTarget right_start, left_start;
+};
+Theatre theatre_of(const simulation::Setup& setup);
+
+/// Fills the snapshot and turns controls into inputs, tick by tick; no clock, no thread. What the thread of a Session
+/// runs, and what tests drive.
+class SessionCore {
+  public:
+    SessionCore(std::unique_ptr<simulation::Simulation> run, std::vector<std::shared_ptr<Observer>> observers);
+    ~SessionCore() { end(); }
+    SessionCore(const SessionCore&) = delete;
+    SessionCore& operator=(const SessionCore&) = delete;
+
+    /// One tick of hands and physics. False once the simulation's status is not ok.
+    bool tick(const Controls& controls);
+    void fill(Snapshot& snapshot);
+    /// Tells the observers that this was all, once.
+    void end();
+
+    const simulation::Simulation& run() const { return *run_; }
+    const Theatre& theatre() const { return theatre_; }
+
+  private:
+    tissue::Input input_for(const Controls& controls);
+
+    std::unique_ptr<simulation::Simulation> run_;
+    std::vector<std::shared_ptr<Observer>> observers_;
+    Theatre theatre_;
+    HeldInstrument right_, left_;
+    Picture picture_;
+    tissue::Input input_;
+    double boiling_kg_per_s_ = 0.0;
+    bool ended_ = false;
+};
+
+}  // namespace calot::viewer

@@ -1,0 +1,39 @@
+#pragma once
+// The panels beside the picture while the trainee works.
+
+#include <string>
+#include <vector>
+
+#include "calot/viewer/exercise.h"
+#include "calot/viewer/language.h"
+#include "calot/viewer/snapshot.h"
+#include "calot/window/gui.h"
+#include "calot/window/settings.h"
+
+namespace calot::window {
+
+/// What the window itself measured.
+struct PictureFigures {
+    double pictures_per_s = 0.0;
+    double draw_ms = 0.0;
+    double latency_ms = 0.0;  ///< from reading the devices to the picture that shows it
+    std::string tier;
+    std::string scheduling;
+    std::string sound;
+};
+
+struct HudContent {
+    const viewer::Snapshot& snapshot;
+    const PictureFigures& figures;
+    const Settings& settings;
+    const std::string& exercise;
+    const std::vector<viewer::HudLine>& lines;
+    bool left_hand = false;
+    bool suction = false, irrigation = false;
+    double lens_deg = 0.0;
+};
+
+void draw_hud(const Gui& gui, const viewer::Language& text, const HudContent& content);
+void draw_help(const Gui& gui, const viewer::Language& text);
+
+}  // namespace calot::window
