@@ -10,6 +10,7 @@
 #include "calot/scene/scene.h"
 #include "calot/viewer/data_files.h"
 #include "calot/viewer/exercise.h"
+#include "support/paths.h"
 
 namespace calot::viewer {
 namespace {
