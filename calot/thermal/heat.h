@@ -1,18 +1,31 @@
 #pragma once
 // Heat: conduction, surroundings, boiling, gasification, damage (docs/physics.md section 6).
 //
-// A heat step is explicit in the enthalpy H and runs over blocks of consecutive cells:
+// A heat step is explicit in the enthalpy H. It is spread over the ThermalParameters::refresh_ticks ticks of its
+// interval, block by block (of 256 consecutive cells):
 //
-//     warm blocks --dilate--> active blocks --deposit q--> conduct (T -> H) --> settle (H -> water, T, damage)
+//     tick     0                                1               2              3
+//     begin: warm blocks --dilate--> active     .               .              .
+//     blocks b % 4 = 0                          b % 4 = 1       b % 4 = 2      b % 4 = 3
+//                                                                              finish: which hexels are gas now
+//     a quarter of the hexels that are gas      a quarter       a quarter      (of the next) a quarter
+//
+// Each block takes Joule heat, exchanges heat with temperatures of the start of the step, and gets its temperatures of
+// the end, which lie in an array of their own until the step is done. So blocks need no order, and hexels that vanish
+// meanwhile (burnt, fallen) still take their part in the exchange that has begun; what that leaves in them is booked
+// with them at the end of the step. Between ticks, EnergyBudget::transit holds what blocks that had their turn owe to
+// those that had not: the budget closes at every tick.
 //
 // A block is warm when any of its hexels has a temperature other than body temperature, bit by bit; its neighbours are
-// active too. Everything that exchanges heat is zero at body temperature, so that skipping the other blocks changes no
-// byte: heat cannot be lost at the cold front, and which blocks are warm is a function of State alone.
+// active too, and those that Joule heat reaches. Everything that exchanges heat is zero at body temperature, so that
+// skipping the other blocks changes no byte: heat cannot be lost at the cold front, and which blocks are warm is a
+// function of State alone. Nor does the tick in which a block has its turn depend on which others are active.
 
 #include <cstdint>
 #include <vector>
 
 #include "calot/base/array.h"
+#include "calot/thermal/blocks.h"
 #include "calot/thermal/properties.h"
 #include "calot/tissue/exchange.h"
 #include "calot/tissue/state.h"
@@ -21,44 +34,54 @@ namespace calot::thermal {
 
 /// What one block of cells contributed to a heat step, per cubic metre of hexel: sums over its hexels [J/m^3].
 struct BlockSums {
+    double delivered = 0.0;  ///< by Joule heat
+    double conducted = 0.0;  ///< into hexels that are still there; zero over all blocks, up to rounding
     double surface = 0.0;
     double perfusion = 0.0;
     double gas = 0.0;
     double latent = 0.0;
     std::int64_t bad_hexel = -1;  ///< the first whose enthalpy is no longer a number
     bool boiled = false;          ///< Work::steam_kg_per_m3 has entries
-    bool spent = false;           ///< holds hexels that are gas now
+    bool warm = false;            ///< holds hexels that are not at body temperature now
+    bool hot = false;             ///< and some that boil or take damage
+    bool spent = false;           ///< and some that are gas
 };
 
-/// Scratch. `temperature_K` is current for every present hexel at the end of conduct().
+/// Scratch. What lies in it at the end of a heat step is a function of State.
 struct Work {
-    Array<float> temperature_K;        ///< [hexels.cells]
-    std::vector<std::int32_t> blocks;  ///< active in this step, ascending
-    bool dense = false;                ///< every block is active: for comparison only
-    bool scalar = false;               ///< take the scalar reference kernels: for comparison only
+    Array<float> temperature_K;  ///< [hexels.cells] of every present hexel at the end of the last complete heat step
+    BlockSet active;             ///< blocks that take part in this step
+    bool dense = false;          ///< every block takes part: for comparison only
+    bool scalar = false;         ///< take the scalar reference kernels: for comparison only
 
     // The room's own.
     Properties properties;
-    Array<float> steam_kg_per_m3;        ///< [hexels.cells] boiled off in this step; zero between steps
+    Array<float> next_temperature_K;     ///< [hexels.cells] of the step under way; of resting blocks as the other
+    Array<float> steam_kg_per_m3;        ///< [hexels.cells] boiled off in this tick; zero between ticks
     Array<std::uint8_t> group_material;  ///< see Properties
-    std::vector<std::uint8_t> warm;      ///< [blocks] a superset of the warm blocks
-    std::vector<std::uint8_t> active;    ///< [blocks]
-    std::vector<BlockSums> sums;         ///< [active blocks]
-    std::vector<double> plane_sums;      ///< Joule heat of each plane of the window
-    int substeps = 1;                    ///< of a heat step, so that it is stable
+    BitArray present;                    ///< hexels when the step began
+    BlockSet populated, warm, heated;    ///< blocks that hold tissue, are warm, were active in the step before
+    BlockSet pristine;                   ///< blocks with all their water and no damage
+    BlockSet spent_blocks;               ///< blocks in which hexels turned to gas during this step
+    std::vector<std::int32_t> turn;      ///< blocks of this tick, ascending
+    std::vector<BlockSums> sums;         ///< of those
+    std::vector<std::int32_t> spent;     ///< hexels that are gas and have still to go, ascending
+    std::vector<std::int32_t> burnt;     ///< hexels that went since the step began
+    std::int64_t fallen = 0;             ///< State::hexels_fallen when it began
+    int slices = 1;                      ///< ticks that a step is spread over
+    int substeps = 1;                    ///< more than one where a step would not be stable; then all in its first tick
 };
 Work make_work(const tissue::Model& model, const tissue::State& state);
 
 using tissue::temperature_K;
 
-/// Every ThermalParameters::refresh_ticks: one step of conduction, surroundings, perfusion, Joule heat
-/// (Exchange::joule), boiling (State::water, GasEvents), damage and peak temperature, with the energy budget. On other
-/// ticks returns at once. Books as EnergyBudget::delivered what Exchange::joule really put into hexels (those burnt
-/// since the field was solved get nothing) plus its outflow.
+/// This tick's part of a heat step: conduction, surroundings, blood, Joule heat (Exchange::joule), boiling
+/// (State::water, GasEvents), damage and peak temperature, with the energy budget. Books as EnergyBudget::delivered
+/// what Exchange::joule really put into hexels (those burnt since the field was solved get nothing) plus its outflow.
 void conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
-/// Takes hexels whose latent budget is spent out of State::hexel_present and lists them in Exchange::removed_hexels, in
-/// the order of their cells, with their GasEvents.
+/// Takes hexels whose latent budget is spent out of State::hexel_present, as many in each tick of an interval, and
+/// lists them in Exchange::removed_hexels, in the order of their cells, with their GasEvents.
 void remove_vaporised(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
 /// Enthalpy stored in present hexels [J].

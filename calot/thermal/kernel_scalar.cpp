@@ -21,87 +21,114 @@ float face_conductivity(float a, float b) {
     return a == b ? a : 2.0f * (a * b) / (a + b);
 }
 
-}  // namespace
-
-void conduct_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
-    const Properties& p = *step.properties;
-    for (std::int64_t i = begin; i < end; ++i) {
-        if (!bit(step.present, i)) continue;
-        const float own_K = step.temperature_K[i];
-        const tissue::MaterialIndex m = step.material[i];
-        const float conductivity = p.conductivity_W_per_mK[m];
-        float conduction = 0.0f, gas_faces = 0.0f, held_faces = 0.0f;
-        for (const std::int64_t stride : step.offset)
-            for (const std::int64_t j : {i - stride, i + stride}) {
-                if (bit(step.present, j))
-                    conduction += face_conductivity(conductivity, p.conductivity_W_per_mK[step.material[j]]) *
-                                  (step.temperature_K[j] - own_K);
-                else if (bit(step.held, j))
-                    held_faces += 1.0f;
-                else
-                    gas_faces += 1.0f;
-            }
-        float& enthalpy = step.enthalpy_J_per_m3[i];
-        const float rise_K = own_K - step.body_K;
-        const float conducted = enthalpy + step.conduction_factor * conduction;
-        const float perfused = conducted - p.perfusion_W_per_m3K[m] * step.dt_s * rise_K;
-        const float held = perfused - step.surface_factor * p.held_transfer_W_per_m2K[m] * held_faces * rise_K;
-        // Departure: gas takes only heat above body temperature. Tissue that the instrument has not heated is kept at
-        // body temperature by blood and the body beneath, although the gas is cooler.
-        float to_gas =
-            rise_K > 0.0f ? step.surface_factor * p.gas_transfer_W_per_m2K[m] * gas_faces * (own_K - step.gas_K) : 0.0f;
-        to_gas = std::min(to_gas, std::max(held, 0.0f));
-        const float next = held - to_gas;
-        // Booked is what the hexel really lost, after rounding.
-        sums.perfusion += static_cast<double>(conducted - perfused);
-        sums.surface += static_cast<double>((perfused - held) + (held - next));
-        enthalpy = next;
-    }
+/// Share of blood flow that damage leaves: 1 in healthy tissue, 0 where it has coagulated (Omega >= 1), a cubic without
+/// kinks between. Departure from the usual switch at Omega = 1, at which one hexel would flip from one step to the
+/// next.
+float flow_left(float damage) {
+    const float healthy = 1.0f - std::min(damage, 1.0f);
+    return healthy * healthy * (3.0f - 2.0f * healthy);
 }
 
-void settle_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
+/// Conduction and surroundings; returns the new enthalpy.
+float conduct(const HeatStep& step, std::int64_t i, BlockSums& sums) {
     const Properties& p = *step.properties;
+    const float own_K = step.temperature_K[i];
+    const tissue::MaterialIndex m = step.material[i];
+    const float conductivity = p.conductivity_W_per_mK[m];
+    float conduction = 0.0f, gas_faces = 0.0f, held_faces = 0.0f;
+    for (const std::int64_t stride : step.offset)
+        for (const std::int64_t j : {i - stride, i + stride}) {
+            if (bit(step.present, j))
+                conduction += face_conductivity(conductivity, p.conductivity_W_per_mK[step.material[j]]) *
+                              (step.temperature_K[j] - own_K);
+            else if (bit(step.held, j))
+                held_faces += 1.0f;
+            else
+                gas_faces += 1.0f;
+        }
+    const float before = step.enthalpy_J_per_m3[i];
+    const float rise_K = own_K - step.body_K;
+    const float conducted = before + step.conduction_factor * conduction;
+    const float perfused = conducted - p.blood_W_per_m3K[m] * step.dt_s * flow_left(step.damage[i]) * rise_K;
+    const float held = perfused - step.surface_factor * p.held_transfer_W_per_m2K[m] * held_faces * rise_K;
+    // Departure: gas takes only heat above body temperature. Tissue that the instrument has not heated is kept at
+    // body temperature by blood and the body beneath, although the gas is cooler.
+    float to_gas =
+        rise_K > 0.0f ? step.surface_factor * p.gas_transfer_W_per_m2K[m] * gas_faces * (own_K - step.gas_K) : 0.0f;
+    to_gas = std::min(to_gas, std::max(held, 0.0f));
+    const float next = held - to_gas;
+    // Booked is what the hexel really lost, after rounding.
+    if (bit(step.living, i)) sums.conducted += static_cast<double>(conducted - before);
+    sums.perfusion += static_cast<double>(conducted - perfused);
+    sums.surface += static_cast<double>((perfused - held) + (held - next));
+    return next;
+}
+
+/// What exceeds the boiling point turns water to steam, which takes its own heat above T_0 along, so that the rest
+/// stays at the boiling point: H - H' = dw (L + c_w (T_b - T_0)), excess = dw L.
+void boil(const HeatStep& step, std::int64_t i, float& enthalpy, float& water, BlockSums& sums) {
+    const Properties& p = *step.properties;
+    const tissue::MaterialIndex m = step.material[i];
+    const float capacity = p.dry_capacity_J_per_m3K[m] + water * p.water_capacity_J_per_kgK[m];
+    const float excess = enthalpy - capacity * p.wet_limit_K;
+    if (excess <= 0.0f) return;
+    const float left = std::max(water - excess / kLatentHeat, 0.0f);
+    const float steam = water - left;
+    const float next = enthalpy - steam * p.boil_off_J_per_kg[m];
+    sums.gas += static_cast<double>(enthalpy - next);
+    sums.latent += static_cast<double>(steam * kLatentHeat);
+    step.steam_kg_per_m3[i] += steam;
+    sums.boiled = true;
+    water = left;
+    enthalpy = next;
+}
+
+void settle(const HeatStep& step, std::int64_t i, float& enthalpy, BlockSums& sums) {
+    const Properties& p = *step.properties;
+    const tissue::MaterialIndex m = step.material[i];
+    float& water = step.water_kg_per_m3[i];
+    if (!(std::abs(enthalpy) < 1e30f) && sums.bad_hexel < 0) sums.bad_hexel = i;
+    if (step.threshold) {  // no state of its own: water is a function of H
+        const float taken = std::max(enthalpy - p.plateau_J_per_m3[m], 0.0f);
+        water = std::max(p.water_kg_per_m3[m] - taken / kLatentHeat, 0.0f);
+    } else if (water > 0.0f) {
+        boil(step, i, enthalpy, water, sums);
+    }
+    const bool wet = !step.threshold && water > 0.0f;
+    const float capacity = p.dry_capacity_J_per_m3K[m] + water * p.water_capacity_J_per_kgK[m];
+    const float now_K = step.body_K + std::min(enthalpy * (1.0f / capacity), wet ? p.wet_limit_K : p.dry_limit_K[m]);
+    step.next_temperature_K[i] = now_K;
+    sums.warm |= now_K != step.body_K;
+    if (!wet && enthalpy >= p.spent_J_per_m3[m]) sums.spent = true;
+    if (now_K <= kDamageThreshold_K) return;
+    sums.hot = true;
+    step.peak_temperature_K[i] = std::max(step.peak_temperature_K[i], now_K);
+    // A exp(-Ea/(R T)) as exp(ln rate(T_ref) + Ea/(R T_ref) (1 - T_ref/T)): A itself exceeds a float.
+    const float exponent = p.damage_log_rate[m] + p.damage_slope[m] * ((now_K - kDamageReference_K) / now_K);
+    const float rate = std::exp(std::min(exponent, 40.0f));
+    step.damage[i] = std::min(step.damage[i] + rate * step.dt_s, kDamageLimit);
+}
+
+}  // namespace
+
+void deposit_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
+    for_joule_rows(step.joule, begin, end, [&](std::int64_t first, const float* density, std::int64_t count) {
+        for (std::int64_t k = 0; k < count; ++k) {
+            if (!bit(step.living, first + k)) continue;
+            float& enthalpy = step.enthalpy_J_per_m3[first + k];
+            const float next = enthalpy + density[k] * step.dt_s;
+            sums.delivered += static_cast<double>(next - enthalpy);
+            enthalpy = next;
+        }
+    });
+}
+
+void step_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t end, bool, BlockSums& sums) {
     for (std::int64_t i = begin; i < end; ++i) {
         if (!bit(step.present, i)) continue;
-        const tissue::MaterialIndex m = step.material[i];
-        float& enthalpy = step.enthalpy_J_per_m3[i];
-        float& water = step.water_kg_per_m3[i];
-        if (!(std::abs(enthalpy) < 1e30f) && sums.bad_hexel < 0) sums.bad_hexel = i;
-
-        if (step.threshold) {  // no state of its own: water is a function of H
-            const float taken = std::max(enthalpy - p.plateau_J_per_m3[m], 0.0f);
-            water = std::max(p.water_kg_per_m3[m] - taken / kLatentHeat, 0.0f);
-        } else if (water > 0.0f) {
-            // What exceeds the boiling point turns water to steam, which takes its own heat above T_0 along, so that
-            // the rest stays at the boiling point: H - H' = dw (L + c_w (T_b - T_0)), excess = dw L.
-            const float capacity = p.dry_capacity_J_per_m3K[m] + water * p.water_capacity_J_per_kgK[m];
-            const float excess = enthalpy - capacity * p.wet_limit_K;
-            if (excess > 0.0f) {
-                const float wanted = excess / kLatentHeat;
-                const float left = std::max(water - wanted, 0.0f);
-                const float steam = water - left;
-                const float next = enthalpy - steam * p.boil_off_J_per_kg[m];
-                sums.gas += static_cast<double>(enthalpy - next);
-                sums.latent += static_cast<double>(steam * kLatentHeat);
-                step.steam_kg_per_m3[i] += steam;
-                sums.boiled = true;
-                water = left;
-                enthalpy = next;
-            }
-        }
-        const bool wet = !step.threshold && water > 0.0f;
-        const float capacity = p.dry_capacity_J_per_m3K[m] + water * p.water_capacity_J_per_kgK[m];
-        const float now_K =
-            step.body_K + std::min(enthalpy * (1.0f / capacity), wet ? p.wet_limit_K : p.dry_limit_K[m]);
-        step.temperature_K[i] = now_K;
-        step.peak_temperature_K[i] = std::max(step.peak_temperature_K[i], now_K);
-        if (!wet && enthalpy >= p.spent_J_per_m3[m]) sums.spent = true;
-        if (now_K > kDamageThreshold_K) {
-            // A exp(-Ea/(R T)) as exp(ln rate(T_ref) + Ea/(R T_ref) (1 - T_ref/T)): A itself exceeds a float.
-            const float exponent = p.damage_log_rate[m] + p.damage_slope[m] * ((now_K - kDamageReference_K) / now_K);
-            const float rate = std::exp(std::min(exponent, 40.0f));
-            step.damage[i] = std::min(step.damage[i] + rate * step.dt_s, kDamageLimit);
-        }
+        float enthalpy = conduct(step, i, sums);
+        if (bit(step.living, i)) settle(step, i, enthalpy, sums);
+        step.enthalpy_J_per_m3[i] = enthalpy;
     }
 }
 

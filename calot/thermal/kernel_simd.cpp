@@ -2,10 +2,11 @@
 //
 //     T[i - slow], T[i - middle], T[i - 1]  ->  i .. i + N - 1  <-  T[i + 1], T[i + middle], T[i + slow]
 //
-// Nearly all vectors lie inside one tissue (group_material): its properties are then one number for all lanes. Where
-// tissues meet, properties are looked up lane by lane. Neighbours' presence is a few bits at a constant offset.
-// Multiplication and addition stay separate so that instruction sets with and without fused multiply-add give the same
-// bytes.
+// One pass does it all: it reads temperatures of the start of the step and writes those of its end into another array,
+// so that cells need no order. Nearly all vectors lie inside one tissue (group_material): its properties are then one
+// number for all lanes. Where tissues meet, properties are looked up lane by lane. Neighbours' presence is a few bits
+// at a constant offset. Multiplication and addition stay separate so that instruction sets with and without fused
+// multiply-add give the same bytes.
 
 #include "calot/thermal/kernel.h"
 
@@ -30,6 +31,9 @@ using Mask = hn::Mask<D>;
 /// Bits of presence are read 64 cells at a time, and used a vector of cells at a time.
 constexpr std::int64_t kWordCells = 64;
 static_assert(kBlockCells % kWordCells == 0);
+
+/// Cells are counted in groups of 16, which take one vector or more.
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(D())), kParts = kGroupCells / kLanes;
 
 /// The bits of the 64 cells from `cell` on.
 HWY_INLINE std::uint64_t word_at(const std::uint8_t* bits, std::int64_t cell) {
@@ -77,25 +81,26 @@ class PropertyLookup {
     hn::Vec<DI> index_ = hn::Zero(DI());
 };
 
-/// A sum over cells in 16 partial sums, cell i in that of i mod 16, so that it does not depend on how wide vectors are.
+/// A sum over cells in 16 partial sums, one for each place in a group, so that it does not depend on how wide vectors
+/// are.
 class CellSum {
   public:
-    /// `k` counts cells from a multiple of 16 on.
-    HWY_INLINE void add(std::int64_t k, F values) {
-        float* partial = partial_ + k % 16;
-        hn::Store(hn::Add(hn::Load(D(), partial), values), D(), partial);
+    HWY_INLINE CellSum() {
+        for (F& partial : partial_) partial = hn::Zero(D());
     }
-    HWY_INLINE void add_one(std::int64_t k, float value) { partial_[k % 16] += value; }
+    /// `part` of a group.
+    HWY_INLINE void add(int part, F values) { partial_[part] = hn::Add(partial_[part], values); }
     /// Pairwise, which is more exact than one after the other.
     HWY_INLINE double total() const {
-        float sums[8];
-        for (int k = 0; k < 8; ++k) sums[k] = partial_[k] + partial_[k + 8];
-        for (int k = 0; k < 4; ++k) sums[k] += sums[k + 4];
-        return static_cast<double>((sums[0] + sums[2]) + (sums[1] + sums[3]));
+        HWY_ALIGN float sums[kGroupCells];
+        for (int part = 0; part < kParts; ++part) hn::Store(partial_[part], D(), sums + part * kLanes);
+        for (int half = kGroupCells / 2; half > 1; half /= 2)
+            for (int k = 0; k < half; ++k) sums[k] += sums[k + half];
+        return static_cast<double>(sums[0] + sums[1]);
     }
 
   private:
-    HWY_ALIGN float partial_[16] = {};
+    F partial_[kParts];
 };
 
 /// e^x for x in [-87, 87], to 2e-7: x = n ln 2 + r, Taylor's series in |r| <= ln 2 / 2 (the first term left out is
@@ -112,48 +117,35 @@ HWY_INLINE F exponential(F x) {
     return hn::Mul(series, hn::BitCast(d, power));
 }
 
-double deposit_tile(const HeatStep& step, const HeatTile& density, std::int64_t first, std::int64_t stride, int rows,
-                    int columns) {
+void deposit_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
     const D d;
-    const auto lanes = static_cast<int>(hn::Lanes(d));
     const F dt = number(step.dt_s);
     CellSum sum;
-    for (int row = 0; row < rows; ++row) {
-        const std::int64_t i = first + row * stride;
-        const std::uint64_t present = word_at(step.present, i) & ((std::uint64_t{1} << columns) - 1);
-        if (present == 0) continue;
-        float* enthalpy = step.enthalpy_J_per_m3 + i;
-        int k = 0;
-        for (; k + lanes <= columns; k += lanes) {
-            const F before = hn::LoadU(d, enthalpy + k);
-            const F heat = hn::IfThenElseZero(mask_of(present, k), hn::Mul(hn::Load(d, density[row] + k), dt));
-            const F next = hn::Add(before, heat);
-            sum.add(k, hn::Sub(next, before));
-            hn::StoreU(next, d, enthalpy + k);
+    float rest = 0.0f;
+    for_joule_rows(step.joule, begin, end, [&](std::int64_t first, const float* density, std::int64_t count) HWY_ATTR {
+        std::int64_t k = 0;
+        for (; k + kGroupCells <= count; k += kGroupCells) {
+            const std::uint64_t living = word_at(step.living, first + k);
+            for (int part = 0; part < kParts; ++part) {
+                const std::int64_t at = k + part * kLanes;
+                float* enthalpy = step.enthalpy_J_per_m3 + first + at;
+                const F before = hn::LoadU(d, enthalpy), heat = hn::Mul(hn::LoadU(d, density + at), dt);
+                const F next = hn::Add(before, hn::IfThenElseZero(mask_of(living, part * kLanes), heat));
+                sum.add(part, hn::Sub(next, before));
+                hn::StoreU(next, d, enthalpy);
+            }
         }
-        for (; k < columns; ++k) {  // cells beyond belong to other threads
-            if (((present >> k) & 1u) == 0) continue;
-            const float next = enthalpy[k] + density[row][k] * step.dt_s;
-            sum.add_one(k, next - enthalpy[k]);
-            enthalpy[k] = next;
+        if (k == count) return;
+        const std::uint64_t living = word_at(step.living, first + k);
+        for (std::int64_t j = 0; k + j < count; ++j) {  // cells beyond belong to other threads
+            if (((living >> j) & 1u) == 0) continue;
+            float& enthalpy = step.enthalpy_J_per_m3[first + k + j];
+            const float next = enthalpy + density[k + j] * step.dt_s;
+            rest += next - enthalpy;
+            enthalpy = next;
         }
-    }
-    return sum.total();
-}
-
-bool is_warm(const HeatStep& step, std::int64_t begin, std::int64_t end) {
-    const D d;
-    const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
-    for (std::int64_t word = begin; word < end; word += kWordCells) {
-        const std::uint64_t present = word_at(step.present, word);
-        for (std::int64_t k = 0; present != 0 && k < kWordCells; k += lanes) {
-            if (lanes_of(present, k) == 0) continue;
-            // Not "unequal", which some instruction sets deny for what is not a number.
-            const Mask cold = hn::Eq(hn::Load(d, step.temperature_K + word + k), number(step.body_K));
-            if (!hn::AllFalse(d, hn::AndNot(cold, mask_of(present, k)))) return true;
-        }
-    }
-    return false;
+    });
+    sums.delivered += sum.total() + static_cast<double>(rest);
 }
 
 /// Offset to one of the six neighbours.
@@ -234,163 +226,203 @@ HWY_INLINE Faces conduction_anywhere(const HeatStep& step, const Surroundings& a
     return faces;
 }
 
-void conduct_cells(const HeatStep& shared, std::int64_t begin, std::int64_t end, BlockSums& sums) {
-    const HeatStep step = shared;  // a copy of its own stays in registers
+/// Sums over a block, lane by lane.
+struct StepSums {
+    CellSum conducted, perfusion, surface, gas, latent;
+    Mask warm, hot, spent;
+    HWY_INLINE StepSums() : warm(none()), hot(none()), spent(none()) {}
+    static HWY_INLINE Mask none() { return hn::FirstN(D(), 0); }
+};
+
+/// Share of blood flow that damage leaves: see kernel_scalar.cpp.
+HWY_INLINE F flow_left(F damage) {
+    const F healthy = hn::Sub(number(1.0f), hn::Min(damage, number(1.0f)));
+    return hn::Mul(hn::Mul(healthy, healthy), hn::Sub(number(3.0f), hn::Mul(number(2.0f), healthy)));
+}
+
+/// One vector of cells: the lanes `present` take part, those `living` are still there. It is `part` of its group.
+struct CellVector {
+    std::int64_t i;
+    int part;
+    std::uint8_t group;
+    Mask present, living;
+};
+
+/// Conduction and surroundings; returns the new enthalpy.
+template <bool pristine>
+HWY_INLINE F conduct(const HeatStep& step, const PropertyLookup& of, const Surroundings& around, std::int64_t word,
+                     const CellVector& at, StepSums& sums) {
     const D d;
-    const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
-    const F body = number(step.body_K), zero = hn::Zero(d);
-    const F surface_factor = number(step.surface_factor), conduction_factor = number(step.conduction_factor);
-    CellSum perfusion, surface;
-    for (std::int64_t word = begin; word < end; word += kWordCells) {
-        const Surroundings around = look_around(step, word);
-        for (std::int64_t k = 0; around.present != 0 && k < kWordCells; k += lanes) {
-            const std::uint64_t present = lanes_of(around.present, k);
-            if (present == 0) continue;
-            const std::int64_t i = word + k;
-            const std::uint8_t group = step.group_material[i / kGroupCells];
-            const PropertyLookup of(step.material, i, group);
-            const F own_K = hn::Load(d, step.temperature_K + i);
-            const F conductivity = of(step.properties->conductivity_W_per_mK);
-            const F rise = hn::Sub(own_K, body);
-            const F before = hn::Load(d, step.enthalpy_J_per_m3 + i);
-            const F perfused_per_K = hn::Mul(of(step.properties->perfusion_W_per_m3K), number(step.dt_s));
-            const Mask mask = mask_of(around.present, k);
-            F next;
-            if (lanes_of(around.surrounded, k) == present && group != kMixedGroup) {
-                const F flow = conduction_inside(step, i, own_K, conductivity);
-                const F conducted = hn::Add(before, hn::Mul(conduction_factor, flow));
-                next = hn::Sub(conducted, hn::Mul(perfused_per_K, rise));
-                perfusion.add(k, hn::IfThenElseZero(mask, hn::Sub(conducted, next)));
-            } else {
-                const Faces faces = group == kMixedGroup
-                                        ? conduction_anywhere<true>(step, around, word, k, own_K, conductivity)
-                                        : conduction_anywhere<false>(step, around, word, k, own_K, conductivity);
-                const F to_held = hn::Mul(surface_factor, of(step.properties->held_transfer_W_per_m2K));
-                const F to_gas = hn::Mul(surface_factor, of(step.properties->gas_transfer_W_per_m2K));
-                const F conducted = hn::Add(before, hn::Mul(conduction_factor, faces.conduction));
-                const F perfused = hn::Sub(conducted, hn::Mul(perfused_per_K, rise));
-                const F held = hn::Sub(perfused, hn::Mul(hn::Mul(to_held, faces.held), rise));
-                F gas = hn::Mul(hn::Mul(to_gas, faces.gas), hn::Sub(own_K, number(step.gas_K)));
-                gas = hn::Min(hn::IfThenElseZero(hn::Gt(rise, zero), gas), hn::Max(held, zero));
-                next = hn::Sub(held, gas);
-                perfusion.add(k, hn::IfThenElseZero(mask, hn::Sub(conducted, perfused)));
-                const F lost = hn::Add(hn::Sub(perfused, held), hn::Sub(held, next));
-                surface.add(k, hn::IfThenElseZero(mask, lost));
-            }
-            // Masked stores are slow; absent cells get back what they had.
-            hn::Store(hn::IfThenElse(mask, next, before), d, step.enthalpy_J_per_m3 + i);
-        }
+    const std::int64_t k = at.i - word;
+    const F own_K = hn::Load(d, step.temperature_K + at.i), rise = hn::Sub(own_K, number(step.body_K));
+    const F conductivity = of(step.properties->conductivity_W_per_mK);
+    const F before = hn::Load(d, step.enthalpy_J_per_m3 + at.i), factor = number(step.conduction_factor);
+    F blood = hn::Mul(of(step.properties->blood_W_per_m3K), number(step.dt_s));
+    if constexpr (!pristine) blood = hn::Mul(blood, flow_left(hn::Load(d, step.damage + at.i)));
+    if (HWY_LIKELY(lanes_of(around.surrounded, k) == lanes_of(around.present, k) && at.group != kMixedGroup)) {
+        const F flow = conduction_inside(step, at.i, own_K, conductivity);
+        const F conducted = hn::Add(before, hn::Mul(factor, flow));
+        const F next = hn::Sub(conducted, hn::Mul(blood, rise));
+        sums.conducted.add(at.part, hn::IfThenElseZero(at.living, hn::Sub(conducted, before)));
+        sums.perfusion.add(at.part, hn::IfThenElseZero(at.present, hn::Sub(conducted, next)));
+        return next;
     }
-    sums.perfusion += perfusion.total();
-    sums.surface += surface.total();
+    const F zero = hn::Zero(d);
+    const Faces faces = at.group == kMixedGroup
+                            ? conduction_anywhere<true>(step, around, word, k, own_K, conductivity)
+                            : conduction_anywhere<false>(step, around, word, k, own_K, conductivity);
+    const F to_held = hn::Mul(number(step.surface_factor), of(step.properties->held_transfer_W_per_m2K));
+    const F to_gas = hn::Mul(number(step.surface_factor), of(step.properties->gas_transfer_W_per_m2K));
+    const F conducted = hn::Add(before, hn::Mul(factor, faces.conduction));
+    const F perfused = hn::Sub(conducted, hn::Mul(blood, rise));
+    const F held = hn::Sub(perfused, hn::Mul(hn::Mul(to_held, faces.held), rise));
+    F gas = hn::Mul(hn::Mul(to_gas, faces.gas), hn::Sub(own_K, number(step.gas_K)));
+    gas = hn::Min(hn::IfThenElseZero(hn::Gt(rise, zero), gas), hn::Max(held, zero));
+    const F next = hn::Sub(held, gas);
+    sums.conducted.add(at.part, hn::IfThenElseZero(at.living, hn::Sub(conducted, before)));
+    sums.perfusion.add(at.part, hn::IfThenElseZero(at.present, hn::Sub(conducted, perfused)));
+    const F lost = hn::Add(hn::Sub(perfused, held), hn::Sub(held, next));
+    sums.surface.add(at.part, hn::IfThenElseZero(at.present, lost));
+    return next;
 }
 
-/// Steam of the lanes above the boiling point; returns it [kg/m^3] and changes water and enthalpy.
-HWY_INLINE F boil(F excess, F boil_off, F& water, F& enthalpy) {
+/// Boils the lanes above the boiling point.
+HWY_INLINE void boil(const HeatStep& step, const PropertyLookup& of, const CellVector& at, F capacity, F& water,
+                     F& enthalpy, StepSums& sums, BlockSums& block) {
     const D d;
-    const F wanted = hn::Div(hn::Max(excess, hn::Zero(d)), number(static_cast<float>(kLatentHeatOfWater_J_per_kg)));
-    const F left = hn::Max(hn::Sub(water, wanted), hn::Zero(d));
-    const F steam = hn::Sub(water, left);
-    enthalpy = hn::Sub(enthalpy, hn::Mul(steam, boil_off));
-    water = left;
-    return steam;
+    const F zero = hn::Zero(d), latent_heat = number(static_cast<float>(kLatentHeatOfWater_J_per_kg));
+    const F excess = hn::Sub(enthalpy, hn::Mul(capacity, number(step.properties->wet_limit_K)));
+    const Mask boils = hn::And(hn::And(hn::Gt(water, zero), hn::Gt(excess, zero)), at.living);
+    if (HWY_LIKELY(hn::AllFalse(d, boils))) return;
+    const F wanted = hn::Div(hn::Max(excess, zero), latent_heat);
+    const F left = hn::Max(hn::Sub(water, wanted), zero);
+    const F steam = hn::IfThenElseZero(boils, hn::Sub(water, left));
+    const F after = hn::Sub(enthalpy, hn::Mul(steam, of(step.properties->boil_off_J_per_kg)));
+    sums.gas.add(at.part, hn::IfThenElseZero(boils, hn::Sub(enthalpy, after)));
+    sums.latent.add(at.part, hn::Mul(steam, latent_heat));
+    enthalpy = hn::IfThenElse(boils, after, enthalpy);
+    water = hn::IfThenElse(boils, left, water);
+    hn::Store(water, d, step.water_kg_per_m3 + at.i);
+    hn::Store(hn::Add(hn::Load(d, step.steam_kg_per_m3 + at.i), steam), d, step.steam_kg_per_m3 + at.i);
+    block.boiled = true;
 }
 
-/// Arrhenius' integral over the step.
-HWY_INLINE F add_damage(const HeatStep& step, const PropertyLookup& of, F now_K, F damage) {
+/// Peak and Arrhenius' integral over the step of the lanes that are hot enough.
+HWY_INLINE void hurt(const HeatStep& step, const PropertyLookup& of, std::int64_t i, Mask hurts, F now_K) {
+    const D d;
+    const F peak = hn::Load(d, step.peak_temperature_K + i);
+    hn::Store(hn::IfThenElse(hurts, hn::Max(peak, now_K), peak), d, step.peak_temperature_K + i);
+    const F damage = hn::Load(d, step.damage + i);
+    if (hn::AllFalse(d, hn::And(hurts, hn::Lt(damage, number(kDamageLimit))))) return;
     const F relative = hn::Div(hn::Sub(now_K, number(kDamageReference_K)), now_K);
     const F exponent =
         hn::Add(of(step.properties->damage_log_rate), hn::Mul(of(step.properties->damage_slope), relative));
     const F rate = exponential(hn::Max(hn::Min(exponent, number(40.0f)), number(-87.0f)));
-    return hn::Min(hn::Add(damage, hn::Mul(rate, number(step.dt_s))), number(kDamageLimit));
+    const F more = hn::Min(hn::Add(damage, hn::Mul(rate, number(step.dt_s))), number(kDamageLimit));
+    hn::Store(hn::IfThenElse(hurts, more, damage), d, step.damage + i);
 }
 
-/// Sums over a block, lane by lane.
-struct SettleSums {
-    CellSum gas, latent;
-    Mask spent;
-};
-
-/// Sets temperature and peak. Temperatures of absent cells are nobody's business: no mask.
-HWY_INLINE void set_temperature(const HeatStep& step, std::int64_t i, Mask mask, F now_K) {
-    const D d;
-    hn::Store(now_K, d, step.temperature_K + i);
-    const F peak = hn::Load(d, step.peak_temperature_K + i);
-    const Mask hotter = hn::And(hn::Gt(now_K, peak), mask);
-    if (!hn::AllFalse(d, hotter)) hn::Store(hn::IfThenElse(hotter, now_K, peak), d, step.peak_temperature_K + i);
+/// Lanes that are not at body temperature. Not "unequal", which some instruction sets deny for what is not a number.
+HWY_INLINE Mask warm_lanes(const HeatStep& step, const CellVector& at, F now_K) {
+    return hn::AndNot(hn::Eq(now_K, number(step.body_K)), at.living);
 }
 
-/// settle_cells for the lanes of `mask` from cell i on.
-HWY_INLINE void settle_vector(const HeatStep& step, std::int64_t i, Mask mask, SettleSums& lanes, BlockSums& sums) {
+/// Phases, temperature, peak and damage where something is hot, dry or may boil; returns the enthalpy.
+HWY_NOINLINE F settle(const HeatStep& step, const PropertyLookup& of, const CellVector& at, F enthalpy, StepSums& sums,
+                      BlockSums& block) {
     const D d;
     const Properties& p = *step.properties;
-    const F zero = hn::Zero(d), latent_heat = number(static_cast<float>(kLatentHeatOfWater_J_per_kg));
-    const PropertyLookup of(step.material, i, step.group_material[i / kGroupCells]);
-    const F dry_capacity = of(p.dry_capacity_J_per_m3K), water_capacity = of(p.water_capacity_J_per_kgK);
-    F enthalpy = hn::Load(d, step.enthalpy_J_per_m3 + i);
-    F water = hn::Load(d, step.water_kg_per_m3 + i);
-    F capacity = hn::Add(dry_capacity, hn::Mul(water, water_capacity));
-    const F rise = hn::Mul(enthalpy, hn::Div(number(1.0f), capacity));
-    if (HWY_LIKELY(hn::AllTrue(d, hn::Le(rise, number(p.quick_rise_K))))) {
-        set_temperature(step, i, mask, hn::Add(number(step.body_K), rise));
-        return;
-    }
-    const Mask bad = hn::AndNot(hn::Lt(hn::Abs(enthalpy), number(1e30f)), mask);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, bad)) && sums.bad_hexel < 0) sums.bad_hexel = i + hn::FindFirstTrue(d, bad);
+    const F zero = hn::Zero(d), dry_capacity = of(p.dry_capacity_J_per_m3K);
+    const F water_capacity = of(p.water_capacity_J_per_kgK);
+    const Mask bad = hn::AndNot(hn::Lt(hn::Abs(enthalpy), number(1e30f)), at.living);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, bad)) && block.bad_hexel < 0) block.bad_hexel = at.i + hn::FindFirstTrue(d, bad);
 
-    F limit = of(p.dry_limit_K);
-    Mask dry = mask;
+    F water = hn::Load(d, step.water_kg_per_m3 + at.i), limit = of(p.dry_limit_K);
+    Mask dry = at.living;
     if (step.threshold) {
         const F taken = hn::Max(hn::Sub(enthalpy, of(p.plateau_J_per_m3)), zero);
-        const F left = hn::Max(hn::Sub(of(p.water_kg_per_m3), hn::Div(taken, latent_heat)), zero);
-        hn::Store(hn::IfThenElse(mask, left, water), d, step.water_kg_per_m3 + i);
+        const F gone = hn::Div(taken, number(static_cast<float>(kLatentHeatOfWater_J_per_kg)));
+        water = hn::IfThenElse(at.living, hn::Max(hn::Sub(of(p.water_kg_per_m3), gone), zero), water);
+        hn::Store(water, d, step.water_kg_per_m3 + at.i);
     } else {
-        const F excess = hn::Sub(enthalpy, hn::Mul(capacity, number(p.wet_limit_K)));
-        const Mask boils = hn::And(hn::And(hn::Gt(water, zero), hn::Gt(excess, zero)), mask);
-        if (HWY_UNLIKELY(!hn::AllFalse(d, boils))) {
-            F after = enthalpy, left = water;
-            const F steam = hn::IfThenElseZero(boils, boil(excess, of(p.boil_off_J_per_kg), left, after));
-            lanes.gas.add(i, hn::IfThenElseZero(boils, hn::Sub(enthalpy, after)));
-            lanes.latent.add(i, hn::Mul(steam, latent_heat));
-            enthalpy = hn::IfThenElse(boils, after, enthalpy);
-            water = hn::IfThenElse(boils, left, water);
-            capacity = hn::Add(dry_capacity, hn::Mul(water, water_capacity));
-            hn::Store(enthalpy, d, step.enthalpy_J_per_m3 + i);
-            hn::Store(water, d, step.water_kg_per_m3 + i);
-            hn::Store(hn::Add(hn::Load(d, step.steam_kg_per_m3 + i), steam), d, step.steam_kg_per_m3 + i);
-            sums.boiled = true;
-        }
+        boil(step, of, at, hn::Add(dry_capacity, hn::Mul(water, water_capacity)), water, enthalpy, sums, block);
         const Mask wet = hn::Gt(water, zero);
         limit = hn::IfThenElse(wet, number(p.wet_limit_K), limit);
-        dry = hn::AndNot(wet, mask);
+        dry = hn::AndNot(wet, at.living);
     }
-    const F now_K = hn::Add(number(step.body_K), hn::Min(hn::Mul(enthalpy, hn::Div(number(1.0f), capacity)), limit));
-    set_temperature(step, i, mask, now_K);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, dry)))
-        lanes.spent = hn::Or(lanes.spent, hn::And(dry, hn::Ge(enthalpy, of(p.spent_J_per_m3))));
-    const Mask hurts = hn::And(hn::Gt(now_K, number(kDamageThreshold_K)), mask);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, hurts))) {
-        const F damage = hn::Load(d, step.damage + i);
-        if (!hn::AllFalse(d, hn::And(hurts, hn::Lt(damage, number(kDamageLimit)))))
-            hn::Store(hn::IfThenElse(hurts, add_damage(step, of, now_K, damage), damage), d, step.damage + i);
-    }
+    const F capacity = hn::Add(dry_capacity, hn::Mul(water, water_capacity));
+    const F rise = hn::Min(hn::Mul(enthalpy, hn::Div(number(1.0f), capacity)), limit);
+    const F now_K = hn::Add(number(step.body_K), rise);
+    hn::Store(now_K, d, step.next_temperature_K + at.i);
+    sums.warm = hn::Or(sums.warm, warm_lanes(step, at, now_K));
+    sums.spent = hn::Or(sums.spent, hn::And(dry, hn::Ge(enthalpy, of(p.spent_J_per_m3))));
+    const Mask hurts = hn::And(hn::Gt(now_K, number(kDamageThreshold_K)), at.living);
+    if (hn::AllFalse(d, hurts)) return enthalpy;
+    sums.hot = hn::Or(sums.hot, hurts);
+    hurt(step, of, at.i, hurts, now_K);
+    return enthalpy;
 }
 
-void settle_cells(const HeatStep& shared, std::int64_t begin, std::int64_t end, BlockSums& sums) {
+template <bool pristine>
+HWY_INLINE void step_vector(const HeatStep& step, const Surroundings& around, std::uint64_t living, std::int64_t word,
+                            const CellVector& at, StepSums& sums, BlockSums& block) {
+    const D d;
+    const PropertyLookup of(step.material, at.i, at.group);
+    F enthalpy = conduct<pristine>(step, of, around, word, at, sums);
+    F per_capacity;
+    if constexpr (pristine) {
+        per_capacity = of(step.properties->per_capacity_alive_m3K_per_J);
+    } else {
+        const F water =
+            hn::Mul(hn::Load(d, step.water_kg_per_m3 + at.i), of(step.properties->water_capacity_J_per_kgK));
+        per_capacity = hn::Div(number(1.0f), hn::Add(of(step.properties->dry_capacity_J_per_m3K), water));
+    }
+    const F rise = hn::Mul(enthalpy, per_capacity);
+    if (HWY_LIKELY(hn::AllTrue(d, hn::Le(rise, number(step.properties->quick_rise_K))))) {
+        const F now_K = hn::Add(number(step.body_K), rise);
+        hn::Store(now_K, d, step.next_temperature_K + at.i);
+        sums.warm = hn::Or(sums.warm, warm_lanes(step, at, now_K));
+    } else if (lanes_of(living, at.i - word) != 0) {
+        enthalpy = settle(step, of, at, enthalpy, sums, block);
+    }
+    // Masked stores are slow; absent cells get back what they had.
+    const F before = hn::Load(d, step.enthalpy_J_per_m3 + at.i);
+    hn::Store(hn::IfThenElse(at.present, enthalpy, before), d, step.enthalpy_J_per_m3 + at.i);
+}
+
+template <bool pristine>
+HWY_INLINE void step_block(const HeatStep& shared, std::int64_t begin, std::int64_t end, BlockSums& block) {
     const HeatStep step = shared;  // a copy of its own stays in registers
     const D d;
-    const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
-    SettleSums found{{}, {}, hn::FirstN(d, 0)};
+    StepSums sums;
     for (std::int64_t word = begin; word < end; word += kWordCells) {
-        const std::uint64_t present = word_at(step.present, word);
-        for (std::int64_t k = 0; present != 0 && k < kWordCells; k += lanes)
-            if (lanes_of(present, k) != 0) settle_vector(step, word + k, mask_of(present, k), found, sums);
+        const Surroundings around = look_around(step, word);
+        if (around.present == 0) continue;
+        const std::uint64_t living = word_at(step.living, word);
+        for (std::int64_t k = 0; k < kWordCells; k += kGroupCells) {
+            const std::uint8_t group = step.group_material[(word + k) / kGroupCells];
+            for (int part = 0; part < kParts; ++part) {
+                const std::int64_t at = k + part * kLanes;
+                if (lanes_of(around.present, at) == 0) continue;
+                const CellVector lanes{word + at, part, group, mask_of(around.present, at), mask_of(living, at)};
+                step_vector<pristine>(step, around, living, word, lanes, sums, block);
+            }
+        }
     }
-    if (sums.boiled) {
-        sums.gas += found.gas.total();
-        sums.latent += found.latent.total();
+    block.conducted += sums.conducted.total();
+    block.perfusion += sums.perfusion.total();
+    block.surface += sums.surface.total();
+    if (block.boiled) {
+        block.gas += sums.gas.total();
+        block.latent += sums.latent.total();
     }
-    sums.spent |= !hn::AllFalse(d, found.spent);
+    block.warm |= !hn::AllFalse(d, sums.warm);
+    block.hot |= !hn::AllFalse(d, sums.hot);
+    block.spent |= !hn::AllFalse(d, sums.spent);
+}
+
+void step_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, bool pristine, BlockSums& sums) {
+    pristine ? step_block<true>(step, begin, end, sums) : step_block<false>(step, begin, end, sums);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -400,23 +432,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace calot::thermal {
 
-HWY_EXPORT(deposit_tile);
-HWY_EXPORT(is_warm);
-HWY_EXPORT(conduct_cells);
-HWY_EXPORT(settle_cells);
+HWY_EXPORT(deposit_cells);
+HWY_EXPORT(step_cells);
 
-double deposit_tile(const HeatStep& step, const HeatTile& density_W_per_m3, std::int64_t first, std::int64_t stride,
-                    int rows, int columns) {
-    return HWY_DYNAMIC_DISPATCH(deposit_tile)(step, density_W_per_m3, first, stride, rows, columns);
+void deposit_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
+    HWY_DYNAMIC_DISPATCH(deposit_cells)(step, begin, end, sums);
 }
-bool is_warm(const HeatStep& step, std::int64_t begin, std::int64_t end) {
-    return HWY_DYNAMIC_DISPATCH(is_warm)(step, begin, end);
-}
-void conduct_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
-    HWY_DYNAMIC_DISPATCH(conduct_cells)(step, begin, end, sums);
-}
-void settle_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
-    HWY_DYNAMIC_DISPATCH(settle_cells)(step, begin, end, sums);
+void step_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, bool pristine, BlockSums& sums) {
+    HWY_DYNAMIC_DISPATCH(step_cells)(step, begin, end, pristine, sums);
 }
 
 }  // namespace calot::thermal

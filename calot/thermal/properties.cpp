@@ -24,7 +24,7 @@ double longest_step_s(const tissue::Model& model, const Properties& p) {
         const double transfer =
             static_cast<double>(std::max(p.gas_transfer_W_per_m2K[m], p.held_transfer_W_per_m2K[m]));
         const double face = std::max(2.0 * own * strongest / (own + strongest) / (s * s), transfer / s);
-        const double rate = 6.0 * face + static_cast<double>(p.perfusion_W_per_m3K[m]);
+        const double rate = 6.0 * face + static_cast<double>(p.blood_W_per_m3K[m]);
         longest = std::min(longest, static_cast<double>(p.dry_capacity_J_per_m3K[m]) / rate);
     }
     return longest;
@@ -57,7 +57,7 @@ Properties Properties::make(const tissue::Model& model) {
         const double k = material.thermal_conductivity_W_per_mK, s = model.hexels.spacing_m;
         p.gas_transfer_W_per_m2K[m] = transfer_W_per_m2K(thermal.gas_transfer_W_per_m2K, k, s);
         p.held_transfer_W_per_m2K[m] = transfer_W_per_m2K(thermal.held_transfer_W_per_m2K, k, s);
-        p.perfusion_W_per_m3K[m] =
+        p.blood_W_per_m3K[m] =
             static_cast<float>(material.perfusion_m3_per_s_kg * density * thermal.blood_density_kg_per_m3 *
                                thermal.blood_specific_heat_J_per_kgK);
         p.dry_capacity_J_per_m3K[m] = curve.dry_capacity_J_per_m3K;
@@ -72,6 +72,8 @@ Properties Properties::make(const tissue::Model& model) {
         p.spent_J_per_m3[m] = static_cast<float>(
             plateau + (threshold ? water * kLatentHeatOfWater_J_per_kg : solids * material.solid_latent_heat_J_per_kg));
         p.water_kg_per_m3[m] = static_cast<float>(water);
+        p.per_capacity_alive_m3K_per_J[m] =
+            1.0f / (p.dry_capacity_J_per_m3K[m] + p.water_kg_per_m3[m] * p.water_capacity_J_per_kgK[m]);
         p.solids_kg_per_m3[m] = static_cast<float>(solids);
         const double slope =
             material.arrhenius_energy_J_per_mol / (kGasConstant_J_per_molK * static_cast<double>(kDamageReference_K));

@@ -15,9 +15,6 @@
 
 namespace calot::thermal {
 
-/// Cells of a block, the unit of work and of rest.
-inline constexpr std::int64_t kBlockCells = 512;
-
 /// Damage below 43 C is not counted: living tissue mends as fast as it is hurt there, and the fits were made at higher
 /// temperatures (extrapolated to 37 C, liver's would kill it at rest within an hour).
 inline constexpr float kDamageThreshold_K = 316.15f;
@@ -36,16 +33,17 @@ struct Properties {
     using PerMaterial = std::array<T, 256>;
 
     alignas(64) PerMaterial<float> conductivity_W_per_mK{};
-    PerMaterial<float> gas_transfer_W_per_m2K{};    ///< from a hexel's centre to gas, see below
-    PerMaterial<float> held_transfer_W_per_m2K{};   ///< and to held tissue
-    PerMaterial<float> perfusion_W_per_m3K{};       ///< w_b rho_b c_b
-    PerMaterial<float> dry_capacity_J_per_m3K{};    ///< C(0)
-    PerMaterial<float> water_capacity_J_per_kgK{};  ///< c_w
-    PerMaterial<float> dry_limit_K{};               ///< rise above T_0 that dry tissue stops at
-    PerMaterial<float> boil_off_J_per_kg{};         ///< latent heat and heat above T_0 that a kilogram of steam takes
-    PerMaterial<float> plateau_J_per_m3{};          ///< H where the last plateau begins
-    PerMaterial<float> spent_J_per_m3{};            ///< H where it ends and the hexel is gas
-    PerMaterial<float> water_kg_per_m3{};           ///< alive
+    PerMaterial<float> gas_transfer_W_per_m2K{};        ///< from a hexel's centre to gas, see below
+    PerMaterial<float> held_transfer_W_per_m2K{};       ///< and to held tissue
+    PerMaterial<float> blood_W_per_m3K{};               ///< w_b rho_b c_b
+    PerMaterial<float> dry_capacity_J_per_m3K{};        ///< C(0)
+    PerMaterial<float> water_capacity_J_per_kgK{};      ///< c_w
+    PerMaterial<float> per_capacity_alive_m3K_per_J{};  ///< 1 / C with all water
+    PerMaterial<float> dry_limit_K{};                   ///< rise above T_0 that dry tissue stops at
+    PerMaterial<float> boil_off_J_per_kg{};  ///< latent heat and heat above T_0 that a kilogram of steam takes
+    PerMaterial<float> plateau_J_per_m3{};   ///< H where the last plateau begins
+    PerMaterial<float> spent_J_per_m3{};     ///< H where it ends and the hexel is gas
+    PerMaterial<float> water_kg_per_m3{};    ///< alive
     PerMaterial<float> solids_kg_per_m3{};
     PerMaterial<float> damage_log_rate{};  ///< ln of the rate [1/s] at kDamageReference_K
     PerMaterial<float> damage_slope{};     ///< Ea / (R T_ref)

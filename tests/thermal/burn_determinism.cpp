@@ -62,7 +62,7 @@ TEST(HeatDeterminism, SnapshotsGoOnWithTheSameBytes) {
     HeatRun run(burn_model());
     while (run.state.tick < kTicks) {
         burn_tick(run);
-        if (run.state.tick % 40 == 6) run.start();  // as after loading: only State is known, and the heat it gets
+        if (run.state.tick % 40 == 8) run.start();  // as after loading: only State is known, and the heat it gets
     }
     EXPECT_EQ(tissue::hash(run.state), tissue::hash(burn(1)));
 }
@@ -70,15 +70,17 @@ TEST(HeatDeterminism, SnapshotsGoOnWithTheSameBytes) {
 TEST(HeatDeterminism, OnlyWarmBlocksWork) {
     HeatRun run(burn_model({120, 100, 60}));
     while (run.state.tick < 100) burn_tick(run);
-    EXPECT_GT(run.work.blocks.size(), 0u);
-    EXPECT_LT(run.work.blocks.size(), run.work.warm.size() / 4);
+    EXPECT_GT(run.work.active.count(), 0);
+    EXPECT_LT(run.work.active.count(), run.work.populated.count() / 4);
 }
 
 namespace {
 
 /// Random states, boiling, dry and spent hexels and holes among them; one step by both kernels.
 void compare_kernels(tissue::PhaseModel phase, std::uint64_t seed) {
-    HeatRun wide(burn_model({33, 29, 21}, phase));
+    tissue::Model model = burn_model({33, 29, 21}, phase);
+    model.thermal.refresh_ticks = 1;
+    HeatRun wide(std::move(model));
     Random random(seed);
     const Lattice& lattice = wide.model.hexels;
     for (std::int64_t i = lattice.first; i < lattice.last; ++i) {
@@ -115,7 +117,7 @@ void compare_kernels(tissue::PhaseModel phase, std::uint64_t seed) {
         ASSERT_NEAR(wide.state.damage[h], plain.state.damage[h], 1e-6f + 2e-4f * plain.state.damage[h]) << i;
     }
     const tissue::EnergyBudget &a = wide.state.energy_J, &b = plain.state.energy_J;
-    EXPECT_NEAR(a.delivered, b.delivered, 1e-9 * std::abs(b.delivered));
+    EXPECT_NEAR(a.delivered, b.delivered, 1e-7 * std::abs(b.delivered));  // wide sums are of floats
     EXPECT_NEAR(a.surface, b.surface, 1e-5 * std::abs(b.surface));
     EXPECT_NEAR(a.perfusion, b.perfusion, 1e-5 * std::abs(b.perfusion));
     EXPECT_NEAR(a.gas, b.gas, 1e-5 * std::abs(b.gas));
