@@ -88,6 +88,9 @@ void check(const Scene& scene) {
     const int m = scene.sampling.hexels_per_edge;
     if (m != 1 && m != 2 && m != 4)
         problems.add(whole, fmt::format("sampling.hexels_per_edge is {}", m), "use 1, 2 or 4");
+    if (tissue::Model::frame_ticks % scene.thermal.refresh_ticks != 0)
+        problems.add(whole, fmt::format("thermal.refresh_ticks is {}", scene.thermal.refresh_ticks),
+                     "use 1, 2, 4 or 8");
     if (scene.hook.insulated_heel_m > scene.hook.heel_length_m)
         problems.add(whole, "hook.insulated_heel_mm is longer than the heel", "at most hook.heel_length_mm");
     if (scene.hook.wire_diameter_m > scene.hook.shaft_diameter_m)

@@ -70,8 +70,8 @@ Group thermal_group() {
         "phase_model", {"water_then_solids", "threshold"}, [](Scene & s) -> auto& { return s.thermal.phase_model; },
         "Water boils, then dry tissue chars and goes; or one threshold for all (Pan et al. 2019).");
     t.integer(
-        "refresh_ticks", named("ticks"), 1, 1000, [](Scene & s) -> auto& { return s.thermal.refresh_ticks; },
-        "Heat is stepped so often.");
+        "refresh_ticks", named("ticks"), 1, 8, [](Scene & s) -> auto& { return s.thermal.refresh_ticks; },
+        "A heat step takes so many: 1, 2, 4 or 8.");
     t.number(
         "body_temperature_C", kCelsius, 0, 60, [](Scene & s) -> auto& { return s.thermal.body_temperature_K; },
         "Of tissue at the start, and of blood.");
