@@ -95,7 +95,9 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
         ->type_name("ID");
     command.add_option("--language", options.language, "Language of the texts, as in data/lang")->type_name("NAME");
     command.add_option("--pictures", options.pictures, "Where F12 puts pictures of the window")->type_name("DIR");
-    command.add_option("--width", options.width, "Of the window, pixels")->type_name("N")->check(CLI::Range(640, 16384));
+    command.add_option("--width", options.width, "Of the window, pixels")
+        ->type_name("N")
+        ->check(CLI::Range(640, 16384));
     command.add_option("--height", options.height, "Of the window, pixels")
         ->type_name("N")
         ->check(CLI::Range(420, 16384));
@@ -129,6 +131,13 @@ int run(int argc, char** argv) {
     add_scene_options(*inspect_command, inspect_options.scene);
     inspect_command->add_flag("--json", inspect_options.json, "As JSON");
     inspect_command->callback([&] { code = inspect(inspect_options); });
+
+    MaterialsOptions materials_options;
+    CLI::App* materials_command =
+        app.add_subcommand("materials", "Print what tissues are made of, with units, ranges and sources");
+    materials_command->add_option("name", materials_options.name, "One tissue; all without")->type_name("NAME");
+    materials_command->add_flag("--json", materials_options.json, "As JSON");
+    materials_command->callback([&] { code = materials(materials_options); });
 
     ReplayOptions replay_options;
     CLI::App* replay_command = app.add_subcommand("replay", "Run a recording again");
