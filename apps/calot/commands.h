@@ -53,13 +53,6 @@ struct InspectOptions {
 };
 int inspect(const InspectOptions& options);
 
-struct MaterialsOptions {
-    std::string name;  ///< empty: all
-    bool json = false;
-};
-/// Prints tissues with units, ranges and sources.
-int materials(const MaterialsOptions& options);
-
 struct ReplayOptions {
     std::string recording;
     bool verify = false;
@@ -77,5 +70,17 @@ struct ViewOptions {
     int threads = 0;  ///< for the physics; 0: as fits the machine
 };
 int view(const ViewOptions& options);
+
+struct BenchOptions {
+    std::vector<std::string> suites;  ///< empty: all
+    std::string json, html;           ///< files to write; both empty: into out/bench/
+    std::string compare;              ///< an earlier JSON file
+    int threads = 0;                  ///< 0: all cores
+    double seconds = 0.0;             ///< simulated, of each scene; 0: 30 s, quick 1.8 s
+    bool quick = false;
+    bool real_time = false;
+    ProgressKind progress = ProgressKind::automatic;
+};
+int bench(const BenchOptions& options);
 
 }  // namespace calot::app

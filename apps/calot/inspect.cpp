@@ -10,6 +10,7 @@
 #include "calot/deformation/integrate.h"
 #include "calot/deformation/topology.h"
 #include "commands.h"
+#include "memory.h"
 
 namespace calot::app {
 
@@ -65,12 +66,6 @@ std::vector<Count> count(const tissue::Model& model, const tissue::State& state,
     return counts;
 }
 
-std::int64_t state_bytes(tissue::State& state) {
-    std::int64_t bytes = 0;
-    for (const tissue::Field& field : tissue::fields(state)) bytes += static_cast<std::int64_t>(field.bytes);
-    return bytes;
-}
-
 Json describe(const simulation::Setup& setup) {
     const tissue::Model& model = setup.model;
     tissue::State state = tissue::State::make(model);
@@ -117,8 +112,17 @@ Json describe(const simulation::Setup& setup) {
                          {"electric_s", model.tick_s * model.electric.refresh_ticks},
                          {"thermal_s", model.tick_s * model.thermal.refresh_ticks}};
     out["lattice_cells"] = {{"hexels", model.hexels.cells}, {"phyxels", model.phyxels.cells}};
-    out["memory_bytes"] = {{"state", state_bytes(state)},
-                           {"limit_of_lattices", scene::memory_bytes(model.hexels.cells, model.phyxels.cells)}};
+    const MemoryUse memory = memory_use(setup, state);
+    out["memory_bytes"] = {
+        {"state", memory.state},
+        {"model", memory.model},
+        {"work", Json::object()},
+        {"all", memory.all()},
+        {"pictures", memory.pictures},
+        {"per_hexel_cell", static_cast<double>(memory.of_hexels) / static_cast<double>(model.hexels.cells)},
+        {"per_phyxel_cell", static_cast<double>(memory.of_phyxels) / static_cast<double>(model.phyxels.cells)},
+        {"limit_of_lattices", scene::memory_bytes(model.hexels.cells, model.phyxels.cells)}};
+    for (const auto& [room, bytes] : memory.work_of_rooms) out["memory_bytes"]["work"][room] = bytes;
     Json organs = Json::array();
     for (const auto& organ : model.organs)
         organs.push_back({{"name", organ.name}, {"holds_tissue", organ.holds_tissue}});
@@ -169,9 +173,11 @@ void print_text(const Json& j) {
                                         t["electric_s"].get<double>() * 1e3, t["thermal_s"].get<double>() * 1e3));
     print_row("lattices", fmt::format("{} cells of hexels, {} of phyxels", grouped(j["lattice_cells"]["hexels"]),
                                       grouped(j["lattice_cells"]["phyxels"])));
-    print_row("memory", fmt::format("state {:.1f} MB; all at most about {:.1f} MB",
-                                    j["memory_bytes"]["state"].get<double>() / 1e6,
-                                    j["memory_bytes"]["limit_of_lattices"].get<double>() / 1e6));
+    const Json& memory = j["memory_bytes"];
+    print_row("memory",
+              fmt::format("{:.1f} MB: {:.0f} bytes a cell of hexels, {:.0f} of phyxels; pictures {:.1f} MB more",
+                          memory["all"].get<double>() / 1e6, memory["per_hexel_cell"].get<double>(),
+                          memory["per_phyxel_cell"].get<double>(), memory["pictures"].get<double>() / 1e6));
     if (!j["organs"].empty()) {
         std::string organs;
         for (const Json& organ : j["organs"]) organs += (organs.empty() ? "" : ", ") + organ["name"].get<std::string>();

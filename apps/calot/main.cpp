@@ -22,6 +22,7 @@ Examples:
   calot inspect scenes/calot.toml                       what the scene is made of
   calot view                                            operate on the standard patient, in a window
   calot replay out/calot/recording.calot --verify       run it again and compare bit for bit
+  calot bench --suite kernels                           how fast each part is on this machine
   calot scene --defaults                                every key that a scene may have
 
 Exit codes: 0 done, 2 bad input or usage, 130 interrupted, 1 anything else.)";
@@ -108,6 +109,32 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
     command.footer("\nWithout SCENE it opens the standard patient. F1 in the window shows the controls.");
 }
 
+void add_bench_options(CLI::App& command, BenchOptions& options) {
+    command.add_option("--suite", options.suites, "Only these: paper, kernels, tick, scale, surface; may be repeated")
+        ->type_name("SUITE")
+        ->check(CLI::IsMember({"paper", "kernels", "tick", "scale", "surface"}));
+    command.add_option("--json", options.json, "Write the figures there")->type_name("FILE");
+    command.add_option("--html", options.html, "Write a page with plots there")->type_name("FILE");
+    command
+        .add_option("--compare", options.compare, "Say what moved against an earlier --json FILE, and how sure it is")
+        ->type_name("FILE");
+    command.add_option("--threads", options.threads, "The most threads to use; 0: all cores")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1024));
+    command.add_option("--seconds", options.seconds, "Simulated time of each scene")
+        ->type_name("S")
+        ->check(seconds_between(0.1, 3600.0));
+    command.add_flag("--quick", options.quick, "A short look: fewer sizes, fewer repetitions");
+    command.add_flag("--real-time", options.real_time,
+                     "Ask for a real-time scheduling policy and lock memory, as a program with a haptic device does");
+    add_word<ProgressKind>(command, "--progress", options.progress, {"auto", "plain", "none"},
+                           {ProgressKind::automatic, ProgressKind::plain, ProgressKind::none},
+                           "auto (a bar on a terminal, lines otherwise), plain or none");
+    command.footer(
+        "\nWithout --json and --html it writes out/bench/bench.json and out/bench/bench.html.\n"
+        "What the figures mean: docs/performance.md.");
+}
+
 int run(int argc, char** argv) {
     CLI::App app("Calot simulates electrosurgery on soft tissue in real time.", "calot");
     app.footer(kExamples);
@@ -132,13 +159,6 @@ int run(int argc, char** argv) {
     inspect_command->add_flag("--json", inspect_options.json, "As JSON");
     inspect_command->callback([&] { code = inspect(inspect_options); });
 
-    MaterialsOptions materials_options;
-    CLI::App* materials_command =
-        app.add_subcommand("materials", "Print what tissues are made of, with units, ranges and sources");
-    materials_command->add_option("name", materials_options.name, "One tissue; all without")->type_name("NAME");
-    materials_command->add_flag("--json", materials_options.json, "As JSON");
-    materials_command->callback([&] { code = materials(materials_options); });
-
     ReplayOptions replay_options;
     CLI::App* replay_command = app.add_subcommand("replay", "Run a recording again");
     replay_command->add_option("recording", replay_options.recording, "recording.calot of a run")
@@ -154,6 +174,11 @@ int run(int argc, char** argv) {
     CLI::App* view_command = app.add_subcommand("view", "Open the trainer: operate in a window");
     add_view_options(*view_command, view_options);
     view_command->callback([&] { code = view(view_options); });
+
+    BenchOptions bench_options;
+    CLI::App* bench_command = app.add_subcommand("bench", "Measure speed, and compare it with an earlier run");
+    add_bench_options(*bench_command, bench_options);
+    bench_command->callback([&] { code = bench(bench_options); });
 
     bool defaults = false;
     CLI::App* scene_command = app.add_subcommand("scene", "About scene files");
