@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include "calot/base/parallel.h"
 #include "calot/simulation/recording.h"
@@ -12,12 +13,19 @@
 namespace calot::simulation {
 
 namespace {
-std::vector<std::uint64_t> hashes_after_burn(int threads) {
+std::vector<std::uint64_t> hashes_after_burn(int threads, double duration_s = 1.6) {
     const ThreadLimit limit(threads);
     const auto setup = burnt_block_setup();
     Simulation run(setup);
-    while (run.time_s() < setup->duration_s) run.tick(setup->script.at(run.time_s()));
+    while (run.time_s() < duration_s) run.tick(setup->script.at(run.time_s()));
+    EXPECT_GT(run.state().hexels_burnt, 0);
     return tissue::hash_fields(run.state());
+}
+
+/// Lets kernels use these instruction sets alone; 0 = all that the processor has.
+void use_targets(std::int64_t targets) {
+    hwy::SetSupportedTargetsForTest(targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 }  // namespace
 
@@ -25,6 +33,17 @@ TEST(Determinism, SameBytesForOneTwoAndFourThreads) {
     const auto one = hashes_after_burn(1);
     EXPECT_EQ(one, hashes_after_burn(2));
     EXPECT_EQ(one, hashes_after_burn(4));
+}
+
+TEST(Determinism, SameBytesOnEveryInstructionSet) {
+    constexpr double kBurn_s = 0.6;  // comes down, presses, burns its first hexels
+    const auto best = hashes_after_burn(1, kBurn_s);
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        use_targets(target);
+        const auto hashes = hashes_after_burn(1, kBurn_s);
+        use_targets(0);
+        EXPECT_EQ(hashes, best) << hwy::TargetName(target);
+    }
 }
 
 TEST(Determinism, RecordingReplaysToTheSameState) {
