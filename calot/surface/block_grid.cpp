@@ -122,10 +122,35 @@ constexpr std::array<int, 12> kEdgeOffsets = [] {
     return offsets;
 }();
 
+/// The cases of cubes with places in EdgeCodes instead of edges.
+struct OffsetCase {
+    std::uint16_t corners = 0;
+    std::array<std::uint16_t, 3 * kMostTriangles> offset{};
+};
+const std::array<OffsetCase, 256>& offset_cases() {
+    static const std::array<OffsetCase, 256> cases = [] {
+        std::array<OffsetCase, 256> made{};
+        for (std::size_t k = 0; k < made.size(); ++k) {
+            const CubeCase& cube = cube_cases()[k];
+            made[k].corners = static_cast<std::uint16_t>(3 * cube.triangles);
+            // The rest repeats the first: it is read, too.
+            for (std::size_t e = 0; cube.triangles > 0 && e < made[k].offset.size(); ++e)
+                made[k].offset[e] = static_cast<std::uint16_t>(kEdgeOffsets[cube.edge[e < made[k].corners ? e : 0]]);
+        }
+        return made;
+    }();
+    return cases;
+}
+
 /// Cubes of a row that the surface cuts, from the nine bits of its four lines of corners.
 std::uint32_t cut_cubes(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     const std::uint32_t any = a | b | c | d, all = a & b & c & d;
     return (any | (any >> 1)) & ~(all & (all >> 1)) & 0xffu;
+}
+
+/// No surface between the corners of a row of cubes.
+bool all_alike(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    return (a | b | c | d) == 0 || (a & b & c & d) == 0x1ffu;
 }
 
 /// Case of cube x of the row.
@@ -151,9 +176,11 @@ void BlockGrid::find_edges(std::int64_t block) {
             const std::uint32_t here = rows[9 * z + y], next = rows[9 * z + y + 1], above = rows[9 * z + y + 9],
                                 next_above = rows[9 * z + y + 10];
             const std::size_t r = kBlock * z + y;
+            edges.before[r] = static_cast<std::uint16_t>(vertices);
+            edges.cut[r] = 0;
+            if (all_alike(here, next, above, next_above)) continue;
             edges.cut[r] =
                 ((here ^ (here >> 1)) & 0xffu) | (((here ^ next) & 0xffu) << 8) | (((here ^ above) & 0xffu) << 16);
-            edges.before[r] = static_cast<std::uint16_t>(vertices);
             vertices += count_bits(edges.cut[r]);
             for (std::uint32_t cut = cut_cubes(here, next, above, next_above); cut != 0; cut &= cut - 1)
                 triangles += cases[case_of(here, next, above, next_above, __builtin_ctz(cut))].triangles;
@@ -174,18 +201,25 @@ void BlockGrid::write_triangles(std::int64_t block, std::uint16_t* corner) const
         for (int z = 0; z < ((owner & 4) ? 1 : kBlock); ++z)
             for (int y = 0; y < ((owner & 2) ? 1 : kBlock); ++y) codes.add_row(theirs, owner, y, z);
     }
-    const auto& cases = cube_cases();
+    const auto& cases = offset_cases();
+    // Two triangles are written always, the others seldom: lengths that vary cost more than what is overwritten. The
+    // end of the last cube may run over, so that all goes into a place of its own first.
+    std::array<std::uint16_t, 3 * (kMostTriangles * kBlock * kBlock * kBlock + 2)> written;
+    std::uint16_t* to = written.data();
     for (int z = 0; z < kBlock; ++z)
         for (int y = 0; y < kBlock; ++y) {
             const auto r = static_cast<std::size_t>(9 * z + y);
             const std::uint32_t here = rows[r], next = rows[r + 1], above = rows[r + 9], next_above = rows[r + 10];
             for (std::uint32_t cut = cut_cubes(here, next, above, next_above); cut != 0; cut &= cut - 1) {
                 const int x = __builtin_ctz(cut);
-                const CubeCase& c = cases[case_of(here, next, above, next_above, x)];
+                const OffsetCase& c = cases[case_of(here, next, above, next_above, x)];
                 const std::uint16_t* code = &codes.code[static_cast<std::size_t>(EdgeCodes::at(x, y, z, 0))];
-                for (std::size_t k = 0; k < 3u * c.triangles; ++k) *corner++ = code[kEdgeOffsets[c.edge[k]]];
+                for (std::size_t k = 0; k < 6; ++k) to[k] = code[c.offset[k]];
+                for (std::size_t k = 6; k < c.corners; ++k) to[k] = code[c.offset[k]];
+                to += c.corners;
             }
         }
+    std::copy(written.data(), to, corner);
 }
 
 }  // namespace calot::surface

@@ -78,6 +78,8 @@ class BlockGrid {
         return first_ + std::int64_t{point.x - 1} * stride_.x + std::int64_t{point.y - 1} * stride_.y +
                std::int64_t{point.z - 1} * stride_.z;
     }
+    /// Of hexels along the inner axes; the first is 1.
+    const Int3& stride() const { return stride_; }
     bool test(const Int3& point) const {
         return (row(point.y, point.z)[(point.x + kReach) >> 3] >> ((point.x + kReach) & 7)) & 1;
     }

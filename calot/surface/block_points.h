@@ -54,13 +54,24 @@ struct EndPoints {
     static constexpr std::size_t at(int x, int y, int z) { return static_cast<std::size_t>(9 * (9 * z + y) + x); }
     void evaluate_all(const Window& window, PointBatch& points) {
         points.count = 0;
-        for (int z = 0; z < Window::kEdge; ++z)
-            for (int y = 0; y < Window::kEdge; ++y)
-                for (std::uint32_t line = rows[static_cast<std::size_t>(9 * z + y)]; line != 0; line &= line - 1) {
-                    const int x = __builtin_ctz(line);
-                    place[at(x, y, z)] = static_cast<std::uint16_t>(points.count);
-                    points.add(moments_at(window, x, y, z), window.test(x, y, z));
-                }
+        std::array<std::uint8_t, 81> filled;
+        std::size_t rows_filled = 0;
+        std::uint32_t any = 0;
+        for (std::size_t row = 0; row < rows.size(); ++row) {
+            filled[rows_filled] = static_cast<std::uint8_t>(row);
+            rows_filled += rows[row] != 0;
+            any |= rows[row];
+        }
+        for (int x = 0; x < Window::kEdge; ++x) {
+            if (((any >> x) & 1u) == 0) continue;
+            const Slice slice = slice_of(window, x);
+            for (std::size_t k = 0; k < rows_filled; ++k) {
+                if (((rows[filled[k]] >> x) & 1u) == 0) continue;
+                const int y = filled[k] % 9, z = filled[k] / 9;
+                place[at(x, y, z)] = static_cast<std::uint16_t>(points.count);
+                points.add(moments_at(slice, y, z), window.test(x, y, z));
+            }
+        }
         evaluate(points);
     }
 };

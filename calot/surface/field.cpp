@@ -74,23 +74,23 @@ struct Sums {
     std::array<std::int64_t, kReach + 1> across{};  ///< rows at +dy less those at -dy
 
     template <int dy, int dz>
-    std::int64_t row(const std::uint32_t* centre, int x) {
+    std::int64_t row(const std::uint8_t* centre) {
         constexpr int k = table_of(dy * dy + dz * dz);
         if constexpr (k < 0)
             return 0;
         else
-            return kTables[k][(centre[dz * Window::kRows + dy] >> x) & 127u];
+            return kTables[k][centre[dz * Window::kRows + dy]];
     }
     template <int d, int dz>
-    std::int64_t row_pair(const std::uint32_t* centre, int x) {
-        const std::int64_t up = row<d, dz>(centre, x), down = row<-d, dz>(centre, x);
+    std::int64_t row_pair(const std::uint8_t* centre) {
+        const std::int64_t up = row<d, dz>(centre), down = row<-d, dz>(centre);
         across[d] += up - down;
         return up + down;
     }
     template <int dz>
-    void add_plane(const std::uint32_t* centre, int x) {
-        const std::int64_t plane = row<0, dz>(centre, x) + row_pair<1, dz>(centre, x) + row_pair<2, dz>(centre, x) +
-                                   row_pair<3, dz>(centre, x);
+    void add_plane(const std::uint8_t* centre) {
+        const std::int64_t plane =
+            row<0, dz>(centre) + row_pair<1, dz>(centre) + row_pair<2, dz>(centre) + row_pair<3, dz>(centre);
         all += plane;
         by_z += dz * plane;
     }
@@ -121,16 +121,23 @@ float field_value(const Moments& m, bool present) {
     return std::max({share, 0.5f - length / static_cast<float>(kFullFieldWeight - m.weight), kLeastValue});
 }
 
-Moments moments_at(const Window& window, int x, int y, int z) {
-    const std::uint32_t* centre = &window.rows[static_cast<std::size_t>((z + kReach) * Window::kRows + y + kReach)];
+Slice slice_of(const Window& window, int x) {
+    Slice slice;
+    for (std::size_t row = 0; row < window.rows.size(); ++row)
+        slice.pattern[row] = static_cast<std::uint8_t>((window.rows[row] >> x) & 127u);
+    return slice;
+}
+
+Moments moments_at(const Slice& slice, int y, int z) {
+    const std::uint8_t* centre = &slice.pattern[static_cast<std::size_t>((z + kReach) * Window::kRows + y + kReach)];
     Sums sums;
-    sums.add_plane<-3>(centre, x);
-    sums.add_plane<-2>(centre, x);
-    sums.add_plane<-1>(centre, x);
-    sums.add_plane<0>(centre, x);
-    sums.add_plane<1>(centre, x);
-    sums.add_plane<2>(centre, x);
-    sums.add_plane<3>(centre, x);
+    sums.add_plane<-3>(centre);
+    sums.add_plane<-2>(centre);
+    sums.add_plane<-1>(centre);
+    sums.add_plane<0>(centre);
+    sums.add_plane<1>(centre);
+    sums.add_plane<2>(centre);
+    sums.add_plane<3>(centre);
     const Unpacked total = unpack(sums.all);
     const SignedPair along_y = unpack_signed(sums.across[1] + 2 * sums.across[2] + 3 * sums.across[3]),
                      along_z = unpack_signed(sums.by_z);

@@ -61,8 +61,17 @@ struct Window {
     bool test(int x, int y, int z) const { return (row(y, z) >> (x + kReach)) & 1u; }
 };
 
-/// The sums at a point of a window, 0 <= x, y, z < Window::kEdge.
-Moments moments_at(const Window& window, int x, int y, int z);
+/// The seven bits around x of every row of a window: what all points with this x look up.
+struct Slice {
+    std::array<std::uint8_t, Window::kRows * Window::kRows> pattern;
+};
+Slice slice_of(const Window& window, int x);
+
+/// The sums at a point of a window, 0 <= x, y, z < Window::kEdge, from the slice of its x.
+Moments moments_at(const Slice& slice, int y, int z);
+inline Moments moments_at(const Window& window, int x, int y, int z) {
+    return moments_at(slice_of(window, x), y, z);
+}
 /// The same, neighbour by neighbour: what the other is compared with.
 Moments moments_at_reference(const Window& window, int x, int y, int z);
 

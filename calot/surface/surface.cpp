@@ -1,6 +1,7 @@
 #include "calot/surface/surface.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "calot/base/parallel.h"
 #include "calot/surface/block_grid.h"
@@ -26,21 +27,21 @@ void grow(std::vector<T>& array, std::size_t size) {
 struct OldBlock {
     BlockEdges edges;
     std::array<Vec3f, 3 * kBlock * kBlock * kBlock> position_m, normal;
-    std::array<std::int64_t, 3 * kBlock * kBlock * kBlock> owner;
+    std::array<std::int32_t, 3 * kBlock * kBlock * kBlock> owner;
 };
 
 }  // namespace
 
 struct Surface::Impl {
     BlockGrid grid;
-    Vec3 origin_m;  ///< of point (0, 0, 0) along the inner axes
     double spacing_m;
+    std::array<std::vector<float>, 3> coordinate_m;  ///< of points along the inner axes
 
     Pool vertex_pool, triangle_pool;
     std::vector<Range> vertex_range, triangle_range;  ///< per block
     std::vector<Vec3f> position_m, normal;            ///< by vertex_range
-    std::vector<std::int64_t> owner;
-    std::vector<std::uint16_t> corner;  ///< three a triangle, by triangle_range; CornerCode
+    std::vector<std::int32_t> owner;                  ///< hexels
+    std::vector<std::uint16_t> corner;                ///< three a triangle, by triangle_range; CornerCode
 
     OldBlock old;
     std::vector<Int3> removed;              ///< points
@@ -66,7 +67,13 @@ struct Surface::Impl {
 };
 
 Surface::Impl::Impl(const tissue::Model& model) : grid(model.hexels), spacing_m(model.hexels.spacing_m) {
-    for (int k = 0; k < 3; ++k) origin_m[k] = model.hexels.origin_m[grid.axis(k)] - spacing_m;
+    for (int k = 0; k < 3; ++k) {
+        const double origin_m = model.hexels.origin_m[grid.axis(k)] - spacing_m;
+        auto& coordinate = coordinate_m[static_cast<std::size_t>(k)];
+        for (int point = 0; point < kBlock * grid.blocks()[k]; ++point)
+            coordinate.push_back(static_cast<float>(origin_m + spacing_m * point));
+    }
+    assert(model.hexels.cells < std::int64_t{1} << 31);  // owners are kept in 32 bits
     const auto blocks = static_cast<std::size_t>(grid.count());
     vertex_range.resize(blocks);
     triangle_range.resize(blocks);
@@ -86,9 +93,10 @@ void Surface::Impl::rebuild() {
     std::fill(vertex_range.begin(), vertex_range.end(), Range{});
     std::fill(triangle_range.begin(), triangle_range.end(), Range{});
     for (std::int64_t block = 0; block < blocks; ++block) fit_ranges(block);
-    // Room for burning: three times the surface of the start, and some for small ones.
-    const std::size_t vertices = 4 * std::size_t{vertex_pool.end()} + 8192,
-                      triangles = 4 * std::size_t{triangle_pool.end()} + 16384;
+    // Room for burning: as much again as the surface of the start, and some for small ones. (The standard dissection
+    // adds a tenth.)
+    const std::size_t vertices = 2 * std::size_t{vertex_pool.end()} + 8192,
+                      triangles = 2 * std::size_t{triangle_pool.end()} + 16384;
     grow(position_m, vertices);
     grow(normal, vertices);
     grow(owner, vertices);
@@ -206,6 +214,9 @@ void Surface::Impl::write_vertices(std::int64_t block, const ChangedPoints* chan
 
     const Int3 low = kBlock * grid.block_coordinates(block);
     const auto step_m = static_cast<float>(spacing_m);
+    const std::array<const float*, 3> here_m{&coordinate_m[0][static_cast<std::size_t>(low.x)],
+                                             &coordinate_m[1][static_cast<std::size_t>(low.y)],
+                                             &coordinate_m[2][static_cast<std::size_t>(low.z)]};
     for (int axis = 0; axis < 3; ++axis) {
         const EdgeList& list = lists[static_cast<std::size_t>(axis)];
         const std::size_t to_upper = axis == 0 ? 1 : axis == 1 ? 9 : 81;
@@ -217,17 +228,20 @@ void Surface::Impl::write_vertices(std::int64_t block, const ChangedPoints* chan
         evaluate(batch);
         // Component k of the batch is inner axis (axis + k) % 3.
         const int outer[3] = {grid.axis(axis), grid.axis((axis + 1) % 3), grid.axis((axis + 2) % 3)};
+        const auto hexel = static_cast<std::int32_t>(grid.hexel_of(low));
+        const int to_upper_hexel = grid.stride()[axis];
         for (std::size_t k = 0; k < list.count; ++k) {
             const EdgeList::Edge& edge = list.edges[k];
             const std::size_t vertex = first + edge.place;
-            Int3 p = low + Int3(edge.x, edge.y, edge.z);
             float* position = &position_m[vertex].x;
-            for (int c = 0; c < 3; ++c) position[grid.axis(c)] = static_cast<float>(origin_m[c] + spacing_m * p[c]);
+            position[grid.axis(0)] = here_m[0][edge.x];
+            position[grid.axis(1)] = here_m[1][edge.y];
+            position[grid.axis(2)] = here_m[2][edge.z];
             position[outer[0]] += step_m * batch.share[k];
             float* n = &normal[vertex].x;
             for (std::size_t c = 0; c < 3; ++c) n[outer[c]] = batch.normal[c][k];
-            if (batch.lower_value[k] >= 0.0f) ++p[axis];
-            owner[vertex] = grid.hexel_of(p);
+            owner[vertex] = hexel + edge.x + edge.y * grid.stride().y + edge.z * grid.stride().z +
+                            (batch.lower_value[k] >= 0.0f ? to_upper_hexel : 0);
         }
     }
 }
