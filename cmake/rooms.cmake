@@ -4,6 +4,11 @@ add_library(calot_flags INTERFACE)
 # -Wno-restrict: g++ 12 sees overlaps in std::string + std::string that are not there.
 # -ffp-contract=off: the compiler may not fuse multiply and add behind our back, so that results do not depend on its mood.
 target_compile_options(calot_flags INTERFACE -Wall -Wextra -Wconversion -Wno-sign-conversion -Wno-restrict -Werror -ffp-contract=off -fno-math-errno)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+    # Vectors of unknown length (SVE) cannot be members of structs, which our kernels keep them in. NEON can.
+    target_compile_definitions(calot_flags INTERFACE
+        "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
+endif()
 if(CALOT_SANITIZE)
     target_compile_options(calot_flags INTERFACE -fsanitize=${CALOT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
     target_link_options(calot_flags INTERFACE -fsanitize=${CALOT_SANITIZE})
