@@ -53,6 +53,13 @@ struct InspectOptions {
 };
 int inspect(const InspectOptions& options);
 
+struct MaterialsOptions {
+    std::string name;  ///< empty: all
+    bool json = false;
+};
+/// Prints tissues with units, ranges and sources.
+int materials(const MaterialsOptions& options);
+
 struct ReplayOptions {
     std::string recording;
     bool verify = false;

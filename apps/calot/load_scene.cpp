@@ -31,6 +31,9 @@ scene::Scene load_scene(const SceneChoice& choice) {
     if (choice.duration_s) scene.duration_s = *choice.duration_s;
     if (choice.seed) scene.seed = *choice.seed;
     scene::check(scene);
+    for (const scene::Warning& warning : scene.warnings)
+        fmt::print(stderr, "calot: warning: {}:{}:{}: {}\n", warning.place.file, warning.place.line,
+                   warning.place.column, warning.text);
     return scene;
 }
 

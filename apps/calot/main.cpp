@@ -159,6 +159,13 @@ int run(int argc, char** argv) {
     inspect_command->add_flag("--json", inspect_options.json, "As JSON");
     inspect_command->callback([&] { code = inspect(inspect_options); });
 
+    MaterialsOptions materials_options;
+    CLI::App* materials_command =
+        app.add_subcommand("materials", "Print what tissues are made of, with units, ranges and sources");
+    materials_command->add_option("name", materials_options.name, "One tissue; all without")->type_name("NAME");
+    materials_command->add_flag("--json", materials_options.json, "As JSON");
+    materials_command->callback([&] { code = materials(materials_options); });
+
     ReplayOptions replay_options;
     CLI::App* replay_command = app.add_subcommand("replay", "Run a recording again");
     replay_command->add_option("recording", replay_options.recording, "recording.calot of a run")

@@ -1,6 +1,7 @@
 #include "report.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -183,6 +184,28 @@ std::string plots(const RunRecord& r) {
     return out + "</div>\n";
 }
 
+/// A table of what each press of the pedal did.
+std::string activations(const RunRecord& r) {
+    if (r.activations.empty()) return "";
+    static constexpr std::array<const char*, 3> kModes{"cut", "blend", "coag"};
+    std::string out =
+        "<h2>Heat beside the cut</h2>\n<p>How far from the edge of what was burnt away (or from where metal touched, "
+        "marked °, when nothing was) tissue reached 45, 50 and 60 °C, and how far it was irreversibly damaged, for "
+        "each "
+        "press of the pedal. Distances are whole hexels.</p>\n<table><tr><th>from</th><th>for</th><th>generator</th>"
+        "<th>energy</th><th>burnt away</th><th>45 °C</th><th>50 °C</th><th>60 °C</th><th>damaged</th><th>wire "
+        "after</th></tr>\n";
+    for (const simulation::Activation& a : r.activations) {
+        out += fmt::format("<tr><td>{:.2f} s</td><td>{:.2f} s</td><td>{} {:g} W</td><td>{:.1f} J</td><td>{}{}</td>",
+                           a.start_s, a.stop_s - a.start_s, kModes[static_cast<std::size_t>(a.mode)], a.power_setting_W,
+                           a.energy_J, grouped(a.hexels_removed), a.from_cut ? "" : "°");
+        for (const double spread_m : a.spread_m)
+            out += spread_m > 0.0 ? fmt::format("<td>{:.1f} mm</td>", spread_m * 1e3) : "<td>–</td>";
+        out += fmt::format("<td>{:.0f} °C</td></tr>\n", celsius_from_kelvin(a.tip_temperature_K));
+    }
+    return out + "</table>\n";
+}
+
 std::string energy(const RunRecord& r) {
     const tissue::EnergyBudget& e = r.last.energy_J;
     return fmt::format(
@@ -283,6 +306,7 @@ std::string report_html(const RunRecord& record, const RunPlan& plan, const std:
     out += kAbout;
     out += stills(record, directory);
     out += plots(record);
+    out += activations(record);
     out += energy(record);
     out += details(record, plan);
     out += files(record);

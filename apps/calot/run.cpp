@@ -118,6 +118,7 @@ RunRecord perform(const RunPlan& plan) {
     record.phyxels_initial = run.state().phyxel_present.count();
     record.hexels_initial = run.state().hexel_present.count();
     InjuryWatch watch(run.model(), run.state());
+    simulation::ActivationWatch activations(run.model());
     std::optional<Outputs> outputs;
     if (!plan.output.directory.empty()) outputs.emplace(plan, run, duration_s);
     try {
@@ -137,6 +138,7 @@ RunRecord perform(const RunPlan& plan) {
                 record.stages_us[k].add(static_cast<double>(run.work().stage_us[k]));
             const double force_N = glm::length(run.state().hook_force_N);
             if (force_N > 0.0) record.force_N.add(force_N);
+            activations.look(run, input);
             if (outputs) outputs->record(input, run.state());
             if (plan.observe && !plan.observe(run.state())) record.stopped_by_observer = true;
             if (tick % kTicksPerLook == 0) watch.look(run.model(), run.state(), run.time_s());
@@ -148,6 +150,8 @@ RunRecord perform(const RunPlan& plan) {
         progress.finish();
         watch.look(run.model(), run.state(), run.time_s());
         record.injuries = watch.injuries();
+        activations.finish(run);
+        record.activations = activations.activations();
         record.last = make_row(run, input);
         timeline.add(record.last);
         timeline.flush();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calot/scene/scene.h"
+#include "calot/simulation/activations.h"
 #include "calot/simulation/simulation.h"
 #include "commands.h"
 #include "frames.h"
@@ -45,6 +46,7 @@ struct RunRecord {
     bool surface_closed = false;
     double surface_volume_m3 = 0.0;
     std::vector<Injury> injuries;
+    std::vector<simulation::Activation> activations;  ///< of the pedal
     std::uint64_t state_hash = 0;
     double wall_s = 0.0;        ///< all, with pictures and files
     double wall_ticks_s = 0.0;  ///< ticks alone

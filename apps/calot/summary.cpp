@@ -1,14 +1,42 @@
 #include "summary.h"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace calot::app {
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What each press of the pedal did. Spread: farthest tissue that reached a level, from the cut's edge, or from where
+/// metal touched when nothing was removed.
+Json activations_json(const std::vector<simulation::Activation>& activations) {
+    static constexpr std::array<const char*, 3> kModes{"cut", "blend", "coag"};
+    Json list = Json::array();
+    for (const simulation::Activation& a : activations) {
+        Json spread;
+        for (std::size_t k = 0; k < simulation::kSpreadLevels; ++k)
+            spread[simulation::kSpreadNames[k]] = a.spread_m[k] * 1e3;
+        list.push_back({{"start_s", a.start_s},
+                        {"stop_s", a.stop_s},
+                        {"mode", kModes[static_cast<std::size_t>(a.mode)]},
+                        {"power_setting_W", a.power_setting_W},
+                        {"energy_J", a.energy_J},
+                        {"hexels_removed", a.hexels_removed},
+                        {"spread_from", a.from_cut ? "cut" : "contact"},
+                        {"spread_mm", spread},
+                        {"tip_temperature_K", a.tip_temperature_K}});
+    }
+    return list;
+}
+
+}  // namespace
+
 std::string summary_json(const RunRecord& r) {
-    using Json = nlohmann::ordered_json;
     Json j;
     j["scene"] = r.scene;
     j["version"] = CALOT_VERSION;
@@ -26,6 +54,7 @@ std::string summary_json(const RunRecord& r) {
     j["hexels_burnt"] = r.last.hexels_burnt;
     j["hexels_fallen"] = r.last.hexels_fallen;
     j["links_severed"] = r.last.links_severed;
+    j["tip"] = {{"temperature_K", r.last.tip.temperature_K}, {"char_kg", r.last.tip.char_kg}};
     j["volume_removed_m3"] = r.last.volume_removed_m3;
     j["max_temperature_K"] = r.max_temperature_K;
     const tissue::EnergyBudget& e = r.last.energy_J;
@@ -51,6 +80,7 @@ std::string summary_json(const RunRecord& r) {
                             {"max_temperature_K", injury.max_temperature_K},
                             {"first_time_s", injury.first_time_s}});
     j["injuries"] = injuries;
+    j["activations"] = activations_json(r.activations);
     j["state_hash"] = fmt::format("{:016x}", r.state_hash);
     j["wall_s"] = r.wall_s;
     // Simulated time over the wall time of the ticks: pictures and files not counted.

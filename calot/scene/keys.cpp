@@ -171,6 +171,7 @@ Group script_burst_group() {
     t.number("power_W", named("W"), 0.1, 300, [](B& b) -> auto& { return b.burst.power_W; },
       "The generator's setting.");
     t.choice("mode", {"cut", "blend", "coag"}, [](B& b) -> auto& { return b.burst.mode; }, "");
+    t.boolean("wiped", [](B& b) -> auto& { return b.burst.wiped; }, "The hook is wiped clean of char just before.");
     group.records = Group::Records{[](const Scene& s) { return s.bursts.size(); }, [](Scene& s) { s.bursts.clear(); },
                                    [](Scene& s, const Place& place) -> void* {
                                        s.bursts.emplace_back().place = place;

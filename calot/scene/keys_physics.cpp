@@ -97,6 +97,13 @@ Group thermal_group() {
     t.number(
         "threshold_temperature_C", kCelsius, 40, 1000,
         [](Scene & s) -> auto& { return s.thermal.threshold_temperature_K; }, "Only with phase_model = \"threshold\".");
+    t.number(
+        "tip_transfer_W_per_m2K", named("W/(m2 K)"), 0, 1e6,
+        [](Scene & s) -> auto& { return s.thermal.tip_transfer_W_per_m2K; },
+        "Heat transfer between the hook's bare wire and tissue.");
+    t.number(
+        "tip_char_share", kNoUnit, 0, 1, [](Scene & s) -> auto& { return s.thermal.tip_char_share; },
+        "Of the solids that burn beside the wire, this share stays on it.");
     return group;
 }
 
@@ -153,6 +160,8 @@ Group material_group(const std::string& name, std::size_t index) {
     number("solid_latent_heat_J_per_kg", named("J/kg"), 1e3, 1e8, &M::solid_latent_heat_J_per_kg,
            "Taken up meanwhile.");
     number("perfusion_ml_per_min_kg", kFlow, 0, 1e5, &M::perfusion_m3_per_s_kg, "Blood flow.");
+    number("vessel_transfer_W_per_m3K", named("W/(m3 K)"), 0, 1e9, &M::vessel_transfer_W_per_m3K,
+           "To blood that streams through a vessel of this tissue.");
     number("arrhenius_frequency_per_s", named("1/s"), 0, 1e120, &M::arrhenius_frequency_per_s, "Of thermal damage.");
     number("arrhenius_energy_J_per_mol", named("J/mol"), 1e3, 1e7, &M::arrhenius_energy_J_per_mol,
            "Of thermal damage.");

@@ -229,12 +229,25 @@ class DocumentReader {
                 const Key* found = nullptr;
                 for (const Key& entry : group.keys)
                     if (entry.name == inner_key.str()) found = &entry;
-                if (found)
+                if (found) {
                     set(*found, &scene_, inner, group.path + "." + found->name);
-                else
+                    warn_if_implausible(name, found->name, place_of(inner.source(), file_));
+                } else {
                     tell_unknown(group.path, std::string(inner_key.str()), place_of(inner_key.source(), file_));
+                }
             }
         }
+    }
+
+    /// Values that no soft tissue has.
+    void warn_if_implausible(const std::string& name, const std::string& key, const Place& place) {
+        const tissue::Material& material = scene_.materials[tissue::find_material(scene_.materials, name)];
+        for (const tissue::MaterialField& field : tissue::material_fields())
+            if (key == field.key && !field.plausible(material))
+                scene_.warnings.push_back(
+                    {place, fmt::format("materials.{}.{} is {:g}; soft tissue lies in {:g} to {:g} {} (`calot materials "
+                                        "{}` has sources)",
+                                        name, key, field.value(material), field.low, field.high, field.unit, name)});
     }
 
     /// Makes sure that the material exists: known ones do, new ones say which they are like. False when it does not.

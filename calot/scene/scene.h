@@ -59,6 +59,12 @@ struct MeshEntry {
     Place place;
 };
 
+/// Something in a scene that is allowed, yet hardly meant.
+struct Warning {
+    Place place;
+    std::string text;
+};
+
 /// How pictures are taken.
 struct Picture {
     int width = 960;
@@ -100,7 +106,8 @@ struct Scene {
     std::vector<ScriptKey> script;
     std::vector<ScriptBurst> bursts;
 
-    std::string directory;  ///< paths of meshes are relative to this
+    std::vector<Warning> warnings;  ///< found while reading
+    std::string directory;          ///< paths of meshes are relative to this
     std::string file;       ///< where it was read from
 };
 

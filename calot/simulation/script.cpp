@@ -67,6 +67,7 @@ tissue::Input Script::at(double time_s) const {
             input.pedal = true;
             input.mode = burst.mode;
             input.power_setting_W = burst.power_W;
+            input.wipe_tip = burst.wiped && time_s < burst.from_s + 1.5e-3;
         }
     return input;
 }

@@ -21,6 +21,7 @@ struct Burst {
     double to_s = 0.0;
     double power_W = 30.0;
     tissue::GeneratorMode mode = tissue::GeneratorMode::cut;
+    bool wiped = false;  ///< the hook is wiped clean just before
 };
 
 /// Between keyframes the tip moves on a monotone cubic (Fritsch & Carlson 1980) per coordinate: smooth, never past a

@@ -65,6 +65,7 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     electric::solve_potential(model, state, exchange, input, *work.electric);
     clock.lap(Stage::electric);
 
+    if (input.wipe_tip) state.tip.char_kg = 0.0;
     thermal::conduct(model, state, exchange, work.thermal);
     clock.lap(Stage::heat);
 

@@ -7,6 +7,7 @@
 #include "calot/base/parallel.h"
 #include "calot/thermal/axes.h"
 #include "calot/thermal/kernel.h"
+#include "calot/thermal/tip.h"
 
 namespace calot::thermal {
 
@@ -71,12 +72,14 @@ void for_words(const Lattice& lattice, const BlockSet& blocks, const Body& body)
         }
 }
 
-void begin_step(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange, Work& work) {
+void begin_step(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,
+                double dt_s) {
     std::swap(work.heated, work.active);
     dilate(model.hexels, work.warm, work.active);
     add_heated(model.hexels, exchange.joule, work.active);
     if (work.dense) work.active = work.populated;  // of equal size: no allocation
     work.active.keep(work.populated);
+    exchange_with_tip(model, state, exchange, work, dt_s);
     // Beyond active blocks nothing flows, whatever is there.
     for_words(model.hexels, work.active,
               [&](std::size_t w) { work.present.words()[w] = state.hexel_present.words()[w]; });
@@ -256,6 +259,7 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     work.sums.resize(static_cast<std::size_t>(blocks));
     work.spent.reserve(static_cast<std::size_t>(model.hexel_initial.count()));
     work.burnt.reserve(work.spent.capacity());
+    work.sticks.reserve(work.spent.capacity());
     find_spent(model, state, work);
     return work;
 }
@@ -270,7 +274,7 @@ void conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange&
     const double dt_s = model.tick_s * model.thermal.refresh_ticks / work.substeps;
     for (int substep = 0; substep < work.substeps; ++substep) {
         if (work.slices == 1 && tick != 0) return;
-        if (tick == 0) begin_step(model, state, exchange, work);
+        if (tick == 0) begin_step(model, state, exchange, work, dt_s);
         run_slice(model, state, exchange, work, dt_s, work.slices == 1 ? 0 : tick);
         if (tick == work.slices - 1) finish_step(model, state, work);
     }
@@ -289,6 +293,7 @@ void remove_vaporised(const tissue::Model& model, tissue::State& state, tissue::
     const auto tick = static_cast<std::size_t>((state.tick + 1) % model.thermal.refresh_ticks);
     const std::size_t ticks_left = work.slices == 1 ? 1 : static_cast<std::size_t>(model.thermal.refresh_ticks) - tick;
     const std::size_t count = (work.spent.size() + ticks_left - 1) / ticks_left;
+    stick_char(model, state, exchange, work, count);
     for (std::size_t k = 0; k < count; ++k) {
         const std::int32_t hexel = work.spent[k];
         const auto h = static_cast<std::size_t>(hexel);
@@ -302,9 +307,9 @@ void remove_vaporised(const tissue::Model& model, tissue::State& state, tissue::
         const double steam = threshold ? static_cast<double>(p.water_kg_per_m3[m]) : 0.0;
         exchange.removed_hexels.push_back(hexel);
         work.burnt.push_back(hexel);
+        const double smoke = static_cast<double>(p.solids_kg_per_m3[m]) * (1.0 - static_cast<double>(work.sticks[k]));
         if (exchange.gas.size() < exchange.gas.capacity())
-            exchange.gas.push_back({hexel, static_cast<float>(steam * volume),
-                                    static_cast<float>(static_cast<double>(p.solids_kg_per_m3[m]) * volume),
+            exchange.gas.push_back({hexel, static_cast<float>(steam * volume), static_cast<float>(smoke * volume),
                                     static_cast<float>(model.thermal.body_temperature_K) + p.dry_limit_K[m]});
         enthalpy = 0.0f;
         state.water_kg_per_m3[h] = 0.0f;

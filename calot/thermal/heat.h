@@ -16,10 +16,11 @@
 // with them at the end of the step. Between ticks, EnergyBudget::transit holds what blocks that had their turn owe to
 // those that had not: the budget closes at every tick.
 //
-// A block is warm when any of its hexels has a temperature other than body temperature, bit by bit; its neighbours are
-// active too, and those that Joule heat reaches. Everything that exchanges heat is zero at body temperature, so that
-// skipping the other blocks changes no byte: heat cannot be lost at the cold front, and which blocks are warm is a
-// function of State alone. Nor does the tick in which a block has its turn depend on which others are active.
+// A block is warm when any of its hexels has a temperature other than body temperature (tissue::kRest_K and more away
+// from it); its neighbours are active too, and those that Joule heat reaches. Everything that exchanges heat is zero at
+// body temperature, so that skipping the other blocks changes no byte: heat cannot be lost at the cold front, and which
+// blocks are warm is a function of State alone. Nor does the tick in which a block has its turn depend on which others
+// are active.
 
 #include <cstdint>
 #include <vector>
@@ -66,6 +67,7 @@ struct Work {
     std::vector<std::int32_t> turn;      ///< blocks of this tick, ascending
     std::vector<BlockSums> sums;         ///< of those
     std::vector<std::int32_t> spent;     ///< hexels that are gas and have still to go, ascending
+    std::vector<float> sticks;           ///< share of the solids of each that goes now which stays on the wire
     std::vector<std::int32_t> burnt;     ///< hexels that went since the step began
     std::int64_t fallen = 0;             ///< State::hexels_fallen when it began
     int slices = 1;                      ///< ticks that a step is spread over
@@ -75,9 +77,10 @@ Work make_work(const tissue::Model& model, const tissue::State& state);
 
 using tissue::temperature_K;
 
-/// This tick's part of a heat step: conduction, surroundings, blood, Joule heat (Exchange::joule), boiling
-/// (State::water, GasEvents), damage and peak temperature, with the energy budget. Books as EnergyBudget::delivered
-/// what Exchange::joule really put into hexels (those burnt since the field was solved get nothing) plus its outflow.
+/// This tick's part of a heat step: the hot wire, conduction, surroundings, blood, Joule heat (Exchange::joule),
+/// boiling (State::water, GasEvents), damage and peak temperature, with the energy budget. Books as
+/// EnergyBudget::delivered what Exchange::joule really put into hexels (those burnt since the field was solved get
+/// nothing) plus its outflow.
 void conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
 /// Takes hexels whose latent budget is spent out of State::hexel_present, as many in each tick of an interval, and

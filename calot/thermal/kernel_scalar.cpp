@@ -96,7 +96,8 @@ void settle(const HeatStep& step, std::int64_t i, float& enthalpy, BlockSums& su
     }
     const bool wet = !step.threshold && water > 0.0f;
     const float capacity = p.dry_capacity_J_per_m3K[m] + water * p.water_capacity_J_per_kgK[m];
-    const float now_K = step.body_K + std::min(enthalpy * (1.0f / capacity), wet ? p.wet_limit_K : p.dry_limit_K[m]);
+    const float rise = std::min(enthalpy * (1.0f / capacity), wet ? p.wet_limit_K : p.dry_limit_K[m]);
+    const float now_K = step.body_K + (std::abs(rise) < tissue::kRest_K ? 0.0f : rise);
     step.next_temperature_K[i] = now_K;
     sums.warm |= now_K != step.body_K;
     if (!wet && enthalpy >= p.spent_J_per_m3[m]) sums.spent = true;

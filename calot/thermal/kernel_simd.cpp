@@ -238,6 +238,12 @@ HWY_INLINE F conduction(const HeatStep& step, const Surroundings& around, const 
     return mixed ? sum : hn::Mul(conductivity, sum);
 }
 
+/// T from its rise above body temperature.
+HWY_INLINE F temperature_of(const HeatStep& step, F rise) {
+    const Mask rests = hn::Lt(hn::Abs(rise), number(tissue::kRest_K));
+    return hn::Add(number(step.body_K), hn::IfThenZeroElse(rests, rise));
+}
+
 /// Share of blood flow that damage leaves: see kernel_scalar.cpp.
 HWY_INLINE F flow_left(F damage) {
     const F healthy = hn::Sub(number(1.0f), hn::Min(damage, number(1.0f)));
@@ -370,7 +376,7 @@ HWY_INLINE void settle(const HeatStep& step, const PropertyLookup<mixed>& of, co
     }
     const F capacity = hn::Add(dry_capacity, hn::Mul(water, water_capacity));
     const F rise = hn::Min(hn::Mul(enthalpy, hn::Div(number(1.0f), capacity)), limit);
-    const F now_K = hn::Add(number(step.body_K), rise);
+    const F now_K = temperature_of(step, rise);
     hn::Store(now_K, d, step.next_temperature_K + at.i);
     sums.warm = hn::Or(sums.warm, warm_lanes(step, at, now_K));
     sums.spent = hn::Or(sums.spent, hn::And(dry, hn::Ge(enthalpy, of(p.spent_J_per_m3))));
@@ -435,7 +441,7 @@ HWY_INLINE bool step_vector(const HeatStep& step, const Surroundings& around, co
     const F next = conduct<pristine, mixed>(step, of, around, temperature, word, k, before, sums);
     hn::Store(next, d, step.enthalpy_J_per_m3 + i);
     const F rise = hn::Mul(next, per_capacity<pristine>(step, of, i));
-    const F now_K = hn::Add(number(step.body_K), rise);
+    const F now_K = temperature_of(step, rise);
     hn::Store(now_K, d, step.next_temperature_K + i);
     // Not "unequal", which some instruction sets deny for what is not a number.
     warm = hn::Or(warm, hn::AndNot(hn::Eq(now_K, number(step.body_K)), mask_of(around.living, k)));

@@ -59,7 +59,8 @@ Properties Properties::make(const tissue::Model& model) {
         p.held_transfer_W_per_m2K[m] = transfer_W_per_m2K(thermal.held_transfer_W_per_m2K, k, s);
         p.blood_W_per_m3K[m] =
             static_cast<float>(material.perfusion_m3_per_s_kg * density * thermal.blood_density_kg_per_m3 *
-                               thermal.blood_specific_heat_J_per_kgK);
+                                   thermal.blood_specific_heat_J_per_kgK +
+                               material.vessel_transfer_W_per_m3K);
         p.dry_capacity_J_per_m3K[m] = curve.dry_capacity_J_per_m3K;
         p.water_capacity_J_per_kgK[m] = curve.water_capacity_J_per_kgK;
         p.dry_limit_K[m] = curve.dry_limit_K;

@@ -35,7 +35,7 @@ struct Properties {
     alignas(64) PerMaterial<float> conductivity_W_per_mK{};
     PerMaterial<float> gas_transfer_W_per_m2K{};        ///< from a hexel's centre to gas, see below
     PerMaterial<float> held_transfer_W_per_m2K{};       ///< and to held tissue
-    PerMaterial<float> blood_W_per_m3K{};               ///< w_b rho_b c_b
+    PerMaterial<float> blood_W_per_m3K{};               ///< to blood: w_b rho_b c_b, and what streams through vessels
     PerMaterial<float> dry_capacity_J_per_m3K{};        ///< C(0)
     PerMaterial<float> water_capacity_J_per_kgK{};      ///< c_w
     PerMaterial<float> per_capacity_alive_m3K_per_J{};  ///< 1 / C with all water

@@ -55,6 +55,11 @@ struct ThermalParameters {
     double blood_specific_heat_J_per_kgK = 3617.0;
     double boiling_temperature_K = 373.15;
     double threshold_temperature_K = 373.15;  ///< T_v of PhaseModel::threshold
+    /// Between bare metal and wet tissue that it presses on; chosen within what is measured at soft contacts.
+    double tip_transfer_W_per_m2K = 5000.0;
+    /// Of the solids that turn to gas beside the wire, this share stays on it; chosen: a dissection then leaves a film
+    /// of a tenth of a millimetre.
+    double tip_char_share = 0.01;
 };
 
 /// Contact between instruments and tissue (section 8).

@@ -13,15 +13,22 @@
 //
 //     water then solids    T - T_0 = min(H / C(w), wet_limit if w > 0 else dry_limit)
 //                          gas when w = 0 and H >= C(0) dry_limit + solids * their latent heat
+//     both                 T = T_0 within kRest_K of it
 //     threshold            T - T_0 = min(H / (rho c), T_v - T_0);  w falls from alive to 0 along the plateau
 //                          gas when H >= rho (c (T_v - T_0) + f * 2.26e6)
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "calot/tissue/state.h"
 
 namespace calot::tissue {
+
+/// Tissue this close to body temperature counts as being at it. The heat stays in its enthalpy and flows once there is
+/// more: the front of a burn is sharp, and what lies beyond needs no work. A plain zero would leave everything warm by
+/// 1e-5 K within seconds.
+inline constexpr float kRest_K = 1e-3f;
 
 /// Temperature of one material as a function of H and w.
 struct PhaseCurve {
@@ -34,7 +41,9 @@ struct PhaseCurve {
     /// T - T_0. The heat kernels do the same operations in the same order.
     float rise_K(float enthalpy_J_per_m3, float water_kg_per_m3) const {
         const float capacity = dry_capacity_J_per_m3K + water_kg_per_m3 * water_capacity_J_per_kgK;
-        return std::min(enthalpy_J_per_m3 * (1.0f / capacity), water_kg_per_m3 > 0.0f ? wet_limit_K : dry_limit_K);
+        const float rise = enthalpy_J_per_m3 * (1.0f / capacity);
+        if (std::abs(rise) < kRest_K) return 0.0f;
+        return std::min(rise, water_kg_per_m3 > 0.0f ? wet_limit_K : dry_limit_K);
     }
 };
 

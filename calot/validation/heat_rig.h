@@ -25,6 +25,12 @@ inline tissue::Material plain_material(const char* name = "plain") {
     return m;
 }
 
+/// No blood cools it.
+inline void bloodless(tissue::Material& material) {
+    material.perfusion_m3_per_s_kg = 0.0;
+    material.vessel_transfer_W_per_m3K = 0.0;
+}
+
 /// Nothing leaves through faces.
 inline void insulate(tissue::Model& model) {
     model.thermal.gas_transfer_W_per_m2K = 0.0;

@@ -57,7 +57,7 @@ TEST(Burn, MaximumPrinciple) {
     // step.
     tissue::Model model = burn_model();
     insulate(model);
-    for (auto& m : model.materials) m.perfusion_m3_per_s_kg = 0.0;
+    for (auto& m : model.materials) bloodless(m);
     model.tick_s = 0.99 * static_cast<double>(Properties::make(model).longest_step_s) / model.thermal.refresh_ticks;
     HeatRun run(std::move(model));
     EXPECT_EQ(run.work.substeps, 1);
@@ -104,7 +104,7 @@ TEST(Burn, LongStepsAreSubdivided) {
 TEST(Burn, UniformTemperatureIsAnEquilibrium) {
     tissue::Model model = burn_model();
     insulate(model);
-    for (auto& m : model.materials) m.perfusion_m3_per_s_kg = 0.0;
+    for (auto& m : model.materials) bloodless(m);
     HeatRun run(std::move(model));
     for (std::int64_t i = run.model.hexels.first; i < run.model.hexels.last; ++i)
         if (run.state.hexel_present.test(i)) run.heat(i, 350.0);

@@ -53,8 +53,8 @@ TEST(ConductionConvergence, GaussianSpreadsWithSecondOrder) {
     EXPECT_GT(std::log2(middle.error_K / fine.error_K), 1.8);
     EXPECT_LT(fine.error_K, 0.02);
     // The variance grows by exactly 2 a dt per step, whatever the spacing, until the tail reaches the walls (4.9
-    // sigma).
-    for (const Spread& spread : {coarse, middle, fine}) EXPECT_LT(spread.variance_error, 2e-4);
+    // sigma), but for what tissue::kRest_K holds back in the tails: a thousandth.
+    for (const Spread& spread : {coarse, middle, fine}) EXPECT_LT(spread.variance_error, 1.5e-3);
 }
 
 namespace {

@@ -12,7 +12,7 @@ namespace {
 double time_to_damage_s(const char* name, double celsius, double step_s) {
     const auto materials = tissue::default_materials();
     tissue::Material m = materials[tissue::find_material(materials, name)];
-    m.perfusion_m3_per_s_kg = 0.0;
+    bloodless(m);
     m.thermal_conductivity_W_per_mK = 0.0;
     tissue::Model model = box_model({1, 1, 1}, 0.6e-3, step_s, {m});
     insulate(model);

@@ -11,7 +11,7 @@ namespace {
 tissue::Material liver() {
     const auto materials = tissue::default_materials();
     tissue::Material m = materials[tissue::find_material(materials, "liver")];
-    m.perfusion_m3_per_s_kg = 0.0;
+    bloodless(m);
     return m;
 }
 
