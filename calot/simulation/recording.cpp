@@ -4,6 +4,7 @@
 #include <cstring>
 #include <system_error>
 
+#include <unistd.h>
 #include <zstd.h>
 
 #include "calot/base/error.h"
@@ -95,11 +96,10 @@ void write_chunk(std::FILE* file, const std::string& path, Kind kind, const std:
         fail(path);
 }
 
-std::string hash_chunk(const tissue::State& state) {
-    const std::vector<std::uint64_t> hashes = tissue::hash_fields(state);
+std::string hash_chunk(const HashRecord& record) {
     std::string raw;
-    append(raw, &state.tick, sizeof(state.tick));
-    append(raw, hashes.data(), hashes.size() * sizeof(std::uint64_t));
+    append(raw, &record.tick, sizeof(record.tick));
+    append(raw, record.fields.data(), record.fields.size() * sizeof(std::uint64_t));
     return raw;
 }
 
@@ -239,16 +239,39 @@ void RecordingWriter::add(const tissue::Input& input, const tissue::State& state
     if (state.tick % ticks_per_chunk_ == 0) flush(state);
 }
 
-void RecordingWriter::flush(const tissue::State& state) {
-    std::string raw;
-    for (const tissue::Input& input : pending_) {
-        const StoredInput stored = store(input);
-        append(raw, &stored, sizeof(stored));
+void RecordingWriter::flush() {
+    if (!pending_.empty()) {
+        std::string raw;
+        for (const tissue::Input& input : pending_) {
+            const StoredInput stored = store(input);
+            append(raw, &stored, sizeof(stored));
+        }
+        pending_.clear();
+        write_chunk(file_.get(), path_, Kind::inputs, raw);
     }
-    pending_.clear();
-    write_chunk(file_.get(), path_, Kind::inputs, raw);
-    write_chunk(file_.get(), path_, Kind::hashes, hash_chunk(state));
     if (std::fflush(file_.get()) != 0) fail(path_);
+}
+
+void RecordingWriter::flush(const tissue::State& state) {
+    flush();
+    write_chunk(file_.get(), path_, Kind::hashes, hash_chunk({state.tick, tissue::hash_fields(state)}));
+    if (std::fflush(file_.get()) != 0) fail(path_);
+}
+
+void RecordingWriter::adopt(const Recording& earlier, std::int64_t ticks) {
+    std::size_t next = 0;
+    for (const HashRecord& record : earlier.hashes) {
+        if (record.tick > ticks) break;
+        for (; next < static_cast<std::size_t>(record.tick); ++next) pending_.push_back(earlier.inputs.at(next));
+        flush();
+        write_chunk(file_.get(), path_, Kind::hashes, hash_chunk(record));
+    }
+    for (; next < static_cast<std::size_t>(ticks); ++next) pending_.push_back(earlier.inputs.at(next));
+    flush();
+}
+
+void RecordingWriter::sync() {
+    ::fdatasync(::fileno(file_.get()));  // where that is not possible, nothing more can be done
 }
 
 void RecordingWriter::finish(const tissue::State& state) {

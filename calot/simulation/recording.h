@@ -46,8 +46,19 @@ class RecordingWriter {
     /// Writes what is left, a last hash record and the end mark.
     void finish(const tissue::State& state);
 
-  private:
+    // For those that write when they choose (a session's own thread):
+    /// One tick's input, kept until the next flush().
+    void add(const tissue::Input& input) { pending_.push_back(input); }
+    /// Writes and flushes the inputs so far.
+    void flush();
+    /// The same, and the hashes of the state after the last of them.
     void flush(const tissue::State& state);
+    /// Begins with the first `ticks` of an earlier recording: a run that continues from there.
+    void adopt(const Recording& earlier, std::int64_t ticks);
+    /// Everything written so far is on the disk, not only with the system.
+    void sync();
+
+  private:
     struct FileCloser {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
