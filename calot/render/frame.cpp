@@ -94,7 +94,7 @@ FrameUniforms make_frame(const View& view, int width, int height) {
         frame.capsule_a[k] = glm::vec4(Vec3f(capsule.a_m), static_cast<float>(capsule.radius_m));
         frame.capsule_b[k] = glm::vec4(Vec3f(capsule.b_m), capsule.bare ? 1.0f : 0.0f);
     }
-    frame.counts = glm::ivec4(0, static_cast<int>(frame_number % 64), 0, 0);
+    frame.counts = glm::ivec4(static_cast<int>(view.paint), static_cast<int>(frame_number % 64), 0, 0);
     return frame;
 }
 

@@ -27,4 +27,13 @@ void write_png(const std::string& path, const Image& image) {
     throw InputError(path, 0, 0, "cannot write this picture", "name a folder that exists and can be written to");
 }
 
+std::string jpeg(const Image& image, int quality) {
+    std::string bytes;
+    const auto append = [](void* context, void* data, int size) {
+        static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+    };
+    stbi_write_jpg_to_func(append, &bytes, image.width, image.height, 3, image.rgb.data(), quality);
+    return bytes;
+}
+
 }  // namespace calot::render

@@ -52,4 +52,7 @@ class Renderer {
 /// Written under a temporary name and renamed. Throws InputError when that fails.
 void write_png(const std::string& path, const Image& image);
 
+/// A JPEG file's bytes; `quality` from 1 to 100.
+std::string jpeg(const Image& image, int quality);
+
 }  // namespace calot::render

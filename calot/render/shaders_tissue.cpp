@@ -162,6 +162,22 @@ float pillow_height(float border) {
     return 1.0 - rest * rest;
 }
 
+// Colours of maps, of albedo: their legends are in apps/calot/debrief_page.cpp.
+vec3 heat_colour(float celsius) {
+    vec3 c = vec3(0.50, 0.50, 0.52);
+    c = mix(c, vec3(0.95, 0.80, 0.25), smoothstep(39.0, 48.0, celsius));
+    c = mix(c, vec3(0.90, 0.35, 0.05), smoothstep(50.0, 62.0, celsius));
+    c = mix(c, vec3(0.70, 0.02, 0.03), smoothstep(66.0, 95.0, celsius));
+    return mix(c, vec3(0.10, 0.00, 0.06), smoothstep(110.0, 220.0, celsius));
+}
+// `coagulated` = 1 - exp(-Omega); Omega = 1 is 0.63.
+vec3 injury_colour(float coagulated) {
+    vec3 c = vec3(0.50, 0.50, 0.52);
+    c = mix(c, vec3(0.95, 0.80, 0.25), smoothstep(0.02, 0.20, coagulated));
+    c = mix(c, vec3(0.85, 0.05, 0.20), smoothstep(0.52, 0.64, coagulated));
+    return mix(c, vec3(0.30, 0.00, 0.25), smoothstep(0.93, 0.999, coagulated));
+}
+
 void main() {
     vec3 p = v_rest;
 
@@ -256,6 +272,18 @@ void main() {
     float ember = smoothstep(230.0, 330.0, v_burn.x) * (0.25 + crack);
     glow = vec3(1.0, 0.22, 0.03) * 0.5 * ember;
 #endif
+    if (u_counts.x != 0) {
+        // A map instead of a picture: no glow, little shine, colours that can be read off.
+#ifdef MIXED
+        look.albedo = u_counts.x == 1 ? heat_colour(v_burn.y) : injury_colour(v_burn.z);
+#else
+        look.albedo = vec3(0.16, 0.17, 0.19);
+#endif
+        glow = vec3(0.0);
+        look.coat *= 0.15;
+        look.rough = 0.7;
+        look.bump *= 0.3;
+    }
     vec3 up = normalize(v_normal);
     vec3 toward = normalize(u_eye.xyz - v_world);
     vec3 tilt = look.pillow * lobules + look.bump * bumps;

@@ -39,8 +39,12 @@ struct Camera {
     double field_of_view_deg = 60.0;  ///< across the round image
 };
 
+/// How tissue is coloured: as it looks, or as a map of its peak temperature or its Arrhenius injury (organs grey).
+enum class Paint { natural, peak_temperature, injury };
+
 struct View {
     Camera camera;
+    Paint paint = Paint::natural;
     double time_s = 0.0;  ///< for pulse and flicker
     std::vector<TissueVertex> tissue;
     std::vector<std::uint32_t> tissue_index;
