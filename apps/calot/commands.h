@@ -44,6 +44,9 @@ struct OutputChoice {
 struct SimulateOptions {
     SceneChoice scene;
     OutputChoice output;
+    std::string task;  ///< empty: not scored
+    bool session = false;  ///< stored as a session instead of written to a directory
+    std::string trainee, data;
 };
 int simulate(const SimulateOptions& options);
 
@@ -75,6 +78,7 @@ struct ViewOptions {
     int width = 1280, height = 800;
     bool fullscreen = false;
     int threads = 0;  ///< for the physics; 0: as fits the machine
+    std::string data, trainee;  ///< of the sessions, see SessionOptions
 };
 int view(const ViewOptions& options);
 
@@ -89,5 +93,58 @@ struct BenchOptions {
     ProgressKind progress = ProgressKind::automatic;
 };
 int bench(const BenchOptions& options);
+
+struct ScoreOptions {
+    std::string recording;
+    std::string task;  ///< empty: the one that lies beside the recording
+    bool json = false;
+    int threads = 0;
+};
+int score(const ScoreOptions& options);
+
+/// A stored session of the scene's script, or one that continues another.
+struct SessionOptions {
+    SceneChoice scene;
+    std::string task;     ///< empty: free practice, or that of the session continued
+    std::string trainee;  ///< a label
+    std::string data;     ///< folder of the store; empty: the user's
+    std::optional<std::int64_t> continues;
+    double from_s = 0.0;
+    int frames = 60;  ///< of the debrief; -1: no debrief
+    int threads = 0;
+    ProgressKind progress = ProgressKind::automatic;
+};
+int session(const SessionOptions& options);
+
+struct SessionsOptions {
+    std::string data, trainee, task;
+};
+int sessions(const SessionsOptions& options);
+
+struct DebriefOptions {
+    std::string subject;  ///< number of a session, or a recording
+    std::string data, task, out;
+    int frames = 100;
+    ProgressKind progress = ProgressKind::automatic;
+};
+int debrief(const DebriefOptions& options);
+
+struct QuestionnaireOptions {
+    std::int64_t session = -1;  ///< -1: print the questions
+    std::string answers;        ///< empty: ask
+    std::string remark, data;
+};
+int questionnaire(const QuestionnaireOptions& options);
+
+struct StudyOptions {
+    std::string data, trainee, task;
+    std::string csv, html;  ///< files to write
+};
+int study(const StudyOptions& options);
+
+struct TasksOptions {
+    bool metrics = false;
+};
+int tasks(const TasksOptions& options);
 
 }  // namespace calot::app

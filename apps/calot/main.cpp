@@ -9,6 +9,7 @@
 
 #include "calot/base/error.h"
 #include "commands.h"
+#include "training_commands.h"
 
 namespace calot::app {
 namespace {
@@ -106,6 +107,8 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
     command.add_option("--threads", options.threads, "Threads for the physics; 0: as fits the machine")
         ->type_name("N")
         ->check(CLI::Range(0, 1024));
+    command.add_option("--trainee", options.trainee, "Label of who trains; any text, no name needed")->type_name("LABEL");
+    command.add_option("--data", options.data, "Where sessions are kept; otherwise $XDG_DATA_HOME/calot")->type_name("DIR");
     command.footer("\nWithout SCENE it opens the standard patient. F1 in the window shows the controls.");
 }
 
@@ -151,6 +154,17 @@ int run(int argc, char** argv) {
             "report.html, recording.calot, surface/*.vtp with surface.pvd (ParaView), frames/*.png, "
             "dissection.mp4.\n") +
         kExamples);
+    simulate_command->add_option("--task", simulate_options.task, "Score the run against a task (`calot tasks`)")
+        ->type_name("TASK");
+    CLI::Option* session = simulate_command->add_flag("--session", simulate_options.session,
+                                                      "Store the run as a session (`calot sessions`), with a debrief");
+    session->excludes("--out");
+    simulate_command->add_option("--trainee", simulate_options.trainee, "Label of who did it; any text, no name needed")
+        ->type_name("LABEL")
+        ->needs(session);
+    simulate_command->add_option("--data", simulate_options.data, "Where sessions are kept")
+        ->type_name("DIR")
+        ->needs(session);
     simulate_command->callback([&] { code = simulate(simulate_options); });
 
     InspectOptions inspect_options;
@@ -186,6 +200,9 @@ int run(int argc, char** argv) {
     CLI::App* bench_command = app.add_subcommand("bench", "Measure speed, and compare it with an earlier run");
     add_bench_options(*bench_command, bench_options);
     bench_command->callback([&] { code = bench(bench_options); });
+
+    TrainingCommands training;
+    training.add_to(app, code);
 
     bool defaults = false;
     CLI::App* scene_command = app.add_subcommand("scene", "About scene files");

@@ -74,7 +74,9 @@ int replay(const ReplayOptions& options) {
     std::optional<Verifier> verifier;
     if (options.verify) {
         verifier.emplace(options.recording, recording);
-        plan.observe = [&](const tissue::State& state) { return verifier->compare(state); };
+        plan.observe = [&](const simulation::Simulation& run, const tissue::Input&) {
+            return verifier->compare(run.state());
+        };
     }
     const RunRecord record = perform(plan);
     if (options.output.progress != ProgressKind::none) print_outcome(record);

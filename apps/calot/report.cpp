@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "calot/base/units.h"
+#include "html.h"
 #include "plot.h"
 #include "report_style.h"
 
@@ -16,35 +17,11 @@ namespace calot::app {
 
 namespace {
 
-std::string base64(const std::string& bytes) {
-    static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    out.reserve((bytes.size() + 2) / 3 * 4);
-    auto byte = [&](std::size_t k) {
-        return k < bytes.size() ? static_cast<unsigned>(static_cast<unsigned char>(bytes[k])) : 0u;
-    };
-    for (std::size_t k = 0; k < bytes.size(); k += 3) {
-        const unsigned word = byte(k) << 16 | byte(k + 1) << 8 | byte(k + 2);
-        out += kLetters[word >> 18];
-        out += kLetters[word >> 12 & 63];
-        out += k + 1 < bytes.size() ? kLetters[word >> 6 & 63] : '=';
-        out += k + 2 < bytes.size() ? kLetters[word & 63] : '=';
-    }
-    return out;
-}
-
 std::string embedded_png(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     std::ostringstream bytes;
     bytes << stream.rdbuf();
-    return "data:image/png;base64," + base64(bytes.str());
-}
-
-/// "3,041"
-std::string grouped(std::int64_t number) {
-    std::string text = fmt::format("{}", number);
-    for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
-    return text;
+    return data_url("image/png", bytes.str());
 }
 
 std::string figure(const std::string& value, const std::string& what) {
@@ -116,6 +93,24 @@ std::string injuries(const RunRecord& r) {
             "s</td></tr>\n",
             escaped(injury.structure), grouped(injury.hexels_removed), grouped(injury.hexels_damaged),
             celsius_from_kelvin(injury.max_temperature_K), injury.first_time_s);
+    return out + "</table>\n";
+}
+
+/// Points of a run with a task, part by part.
+std::string points(const RunRecord& r) {
+    if (!r.scored) return "";
+    const training::Score& score = r.scored->score;
+    std::string out = fmt::format("<h2>{}: {:.0f} of 100 points</h2>\n", escaped(r.scored->task.title), score.points);
+    for (const training::BrokenLimit& limit : score.broken)
+        out += fmt::format("<p class=\"bad\">{}: at most {:.0f} points.</p>\n", escaped(limit.message), limit.cap);
+    out += "<table><tr><th>Measure</th><th>value</th><th>points</th></tr>\n";
+    for (const training::ScorePart& part : score.parts) {
+        const training::Metric& metric = *training::find_metric(part.metric);
+        out += fmt::format("<tr><td title=\"{}\">{}</td><td>{}</td><td>{:.1f} of {:.1f}</td></tr>\n",
+                           escaped(metric.formula), escaped(metric.title),
+                           part.known ? training::shown(metric, part.value) : "not in this scene", part.points,
+                           part.weight);
+    }
     return out + "</table>\n";
 }
 
@@ -303,6 +298,7 @@ std::string report_html(const RunRecord& record, const RunPlan& plan, const std:
     out += hero(record, directory);
     out += key_figures(record);
     out += injuries(record);
+    out += points(record);
     out += kAbout;
     out += stills(record, directory);
     out += plots(record);

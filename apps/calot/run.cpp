@@ -119,6 +119,7 @@ RunRecord perform(const RunPlan& plan) {
     record.hexels_initial = run.state().hexel_present.count();
     InjuryWatch watch(run.model(), run.state());
     simulation::ActivationWatch activations(run.model());
+    if (plan.begin) plan.begin(run);
     std::optional<Outputs> outputs;
     if (!plan.output.directory.empty()) outputs.emplace(plan, run, duration_s);
     try {
@@ -140,7 +141,7 @@ RunRecord perform(const RunPlan& plan) {
             if (force_N > 0.0) record.force_N.add(force_N);
             activations.look(run, input);
             if (outputs) outputs->record(input, run.state());
-            if (plan.observe && !plan.observe(run.state())) record.stopped_by_observer = true;
+            if (plan.observe && !plan.observe(run, input)) record.stopped_by_observer = true;
             if (tick % kTicksPerLook == 0) watch.look(run.model(), run.state(), run.time_s());
             if (tick % kTicksPerFlush == 0) timeline.flush();
             progress.update(run.time_s());
@@ -157,6 +158,7 @@ RunRecord perform(const RunPlan& plan) {
         timeline.flush();
         record.rows = timeline.rows();
         describe_end(run, record);
+        if (plan.conclude) plan.conclude(record);
         if (outputs) {
             outputs->look(run, input);
             outputs->finish(run, record);

@@ -10,6 +10,7 @@
 #include "calot/scene/scene.h"
 #include "calot/simulation/activations.h"
 #include "calot/simulation/simulation.h"
+#include "calot/training/result.h"
 #include "commands.h"
 #include "frames.h"
 #include "injuries.h"
@@ -18,13 +19,19 @@
 
 namespace calot::app {
 
+struct RunRecord;
+
 struct RunPlan {
     scene::Scene scene;
     std::shared_ptr<const simulation::Setup> setup;
     std::int64_t ticks = 0;
     std::function<tissue::Input(std::int64_t tick, double time_s)> input;
+    /// Before the first tick.
+    std::function<void(const simulation::Simulation& run)> begin;
     /// After every tick; false ends the run.
-    std::function<bool(const tissue::State& state)> observe;
+    std::function<bool(const simulation::Simulation& run, const tissue::Input& input)> observe;
+    /// At the end, before anything is told: may add to the record.
+    std::function<void(RunRecord& record)> conclude;
     OutputChoice output;
 };
 
@@ -47,6 +54,7 @@ struct RunRecord {
     double surface_volume_m3 = 0.0;
     std::vector<Injury> injuries;
     std::vector<simulation::Activation> activations;  ///< of the pedal
+    std::shared_ptr<const training::Result> scored;  ///< of runs with a task
     std::uint64_t state_hash = 0;
     double wall_s = 0.0;        ///< all, with pictures and files
     double wall_ticks_s = 0.0;  ///< ticks alone

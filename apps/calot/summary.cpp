@@ -81,6 +81,7 @@ std::string summary_json(const RunRecord& r) {
                             {"first_time_s", injury.first_time_s}});
     j["injuries"] = injuries;
     j["activations"] = activations_json(r.activations);
+    if (r.scored) j["score"] = Json::parse(training::to_json(*r.scored));
     j["state_hash"] = fmt::format("{:016x}", r.state_hash);
     j["wall_s"] = r.wall_s;
     // Simulated time over the wall time of the ticks: pictures and files not counted.

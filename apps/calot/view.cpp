@@ -4,10 +4,13 @@
 #include <string>
 #include <thread>
 
+#include <fmt/format.h>
+
 #include "calot/base/parallel.h"
 #include "calot/viewer/data_files.h"
 #include "calot/window/trainer.h"
 #include "commands.h"
+#include "training_exercises.h"
 
 namespace calot::app {
 
@@ -46,7 +49,9 @@ int view(const ViewOptions& options) {
         if (wish.any_patient) choice.seed = wish.seed;
         return load_scene(choice);
     };
-    trainer.exercises.push_back(viewer::free_practice());
+    std::string trouble;
+    trainer.exercises = training_exercises(options.data, options.trainee, trouble);
+    if (!trouble.empty()) fmt::print(stderr, "calot: note: sessions will not be stored: {}\n", trouble);
     trainer.start = options.start;
     trainer.language = options.language;
     trainer.pictures = options.pictures;
