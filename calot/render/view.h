@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "calot/effects/bleeding.h"
 #include "calot/effects/smoke.h"
 #include "calot/surface/mesh.h"
 #include "calot/tissue/exchange.h"
@@ -23,6 +24,7 @@ struct TissueVertex {
     float damage = 0.0f;                   ///< Omega
     float dryness = 0.0f;                  ///< 0 = all its water, 1 = dry
     float exposure = 0.0f;                 ///< 0 = surface of the start, 1 = laid bare by burning
+    float blood = 0.0f;                    ///< 0 = none, 1 = so thick that nothing shines through
     float look_weights[4] = {1, 0, 0, 0};  ///< fat, duct, artery, gallbladder; sums to 1
 };
 
@@ -39,6 +41,13 @@ struct Camera {
     double field_of_view_deg = 60.0;  ///< across the round image
 };
 
+/// What is on the front lens.
+struct Lens {
+    float fog = 0.0f;    ///< 0 clear ... 1 blind
+    float smear = 0.0f;  ///< drops and film, 0 ... 1
+    float seed = 0.0f;   ///< another pattern for every number
+};
+
 struct View {
     Camera camera;
     double time_s = 0.0;  ///< for pulse and flicker
@@ -50,6 +59,8 @@ struct View {
     std::vector<tissue::Capsule> instrument;         ///< the hook; the renderer models it beautifully from its capsules
     bool energised = false;
     std::vector<effects::SmokeParticle> smoke;
+    std::vector<effects::BloodDrop> drops;
+    Lens lens;
 };
 
 enum class Quality { low, medium, high };

@@ -26,13 +26,10 @@ Theatre theatre_of(const simulation::Setup& setup) {
     theatre.left.port_m =
         landmark_or(setup.anatomy, "grasper_trocar", centre_m + Vec3(-across.x, 0.6 * across.y, across.z));
     const auto& keys = setup.script.keyframes();
-    if (!keys.empty()) {
-        theatre.right_start.tip_m = within_reach(keys.front().tip_m, theatre.right);
-        theatre.right_start.roll_rad = keys.front().roll_rad;
-    } else {
-        theatre.right_start.tip_m = within_reach(centre_m + Vec3(0.015, 0.008, 0.03), theatre.right);
-    }
-    theatre.left_start.tip_m = within_reach(centre_m + Vec3(-0.025, 0.012, 0.028), theatre.left);
+    if (!keys.empty()) theatre.right_start.roll_rad = keys.front().roll_rad;
+    // Both tips in sight, clear of the tissue.
+    theatre.right_start.tip_m = within_reach(centre_m + Vec3(0.010, 0.005, 0.017), theatre.right);
+    theatre.left_start.tip_m = within_reach(centre_m + Vec3(-0.014, 0.006, 0.019), theatre.left);
     return theatre;
 }
 
@@ -68,6 +65,7 @@ tissue::Input SessionCore::input_for(const Controls& controls) {
 
 bool SessionCore::tick(const Controls& controls) {
     input_ = input_for(controls);
+    run_->set_fluids({controls.suction, controls.irrigation});
     const bool ok = run_->tick(input_);
     double gas_kg = 0.0;
     for (const tissue::GasEvent& event : run_->work().exchange.gas)
@@ -88,6 +86,9 @@ void SessionCore::fill(Snapshot& snapshot) {
     snapshot.hook_force_N = state.hook_force_N;
     snapshot.tip_m = right_.tip_m();
     snapshot.boiling_kg_per_s = boiling_kg_per_s_;
+    snapshot.fluids = run_->work().fluids;
+    snapshot.bleeding_m3_per_s = run_->work().bleeding.flow_m3_per_s();
+    snapshot.blood_lost_m3 = run_->work().bleeding.lost_m3();
     snapshot.status = state.status;
     snapshot.hottest_K = 310.15f;
     for (const tissue::NearHexel& near : run_->work().exchange.near)
