@@ -27,9 +27,14 @@ Theatre theatre_of(const simulation::Setup& setup) {
         landmark_or(setup.anatomy, "grasper_trocar", centre_m + Vec3(-across.x, 0.6 * across.y, across.z));
     const auto& keys = setup.script.keyframes();
     if (!keys.empty()) theatre.right_start.roll_rad = keys.front().roll_rad;
-    // Both tips in sight, clear of the tissue.
-    theatre.right_start.tip_m = within_reach(centre_m + Vec3(0.010, 0.005, 0.017), theatre.right);
-    theatre.left_start.tip_m = within_reach(centre_m + Vec3(-0.014, 0.006, 0.019), theatre.left);
+    // Both tips in sight, clear of the tissue: a third of the way from it to the lens.
+    render::Camera camera;
+    camera.eye_m = setup.camera.eye_m;
+    camera.target_m = centre_m;
+    camera.field_of_view_deg = setup.camera.field_of_view_deg;
+    const Vec3 between_m = centre_m + 0.33 * (camera.eye_m - centre_m);
+    theatre.right_start.tip_m = moved_in_view(between_m, camera, theatre.right, 0.16, 0.14, 0.0);
+    theatre.left_start.tip_m = moved_in_view(between_m, camera, theatre.left, -0.26, 0.16, 0.0);
     return theatre;
 }
 

@@ -16,6 +16,8 @@ namespace {
 // Four buffers of 12 ms: what is heard is at most 50 ms old.
 constexpr int kBuffers = 4, kSamples = 512;
 
+void say_nothing(const char*, int, const char*, int, const char*, ...) {}
+
 /// ALSA complains at length on the standard error where there is no sound card; that is no trouble worth a word.
 void hush_alsa() {
     void* library = ::dlopen("libasound.so.2", RTLD_NOW | RTLD_GLOBAL);
@@ -23,7 +25,7 @@ void hush_alsa() {
     using Handler = void (*)(const char* file, int line, const char* function, int error, const char* format, ...);
     using SetHandler = int (*)(Handler);
     if (const auto set = reinterpret_cast<SetHandler>(::dlsym(library, "snd_lib_error_set_handler")))
-        set([](const char*, int, const char*, int, const char*, ...) {});
+        set(say_nothing);
 }
 
 }  // namespace
