@@ -65,6 +65,7 @@ tissue::Input SessionCore::input_for(const Controls& controls) {
     input.mode = controls.yellow ? (controls.blended_cut ? tissue::GeneratorMode::blend : tissue::GeneratorMode::cut)
                                  : tissue::GeneratorMode::coag;
     input.power_setting_W = controls.yellow ? controls.cut_W : controls.blue ? controls.coag_W : 0.0;
+    input.wipe_tip = controls.wipe_tip;
     return input;
 }
 

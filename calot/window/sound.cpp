@@ -24,8 +24,7 @@ void hush_alsa() {
     if (library == nullptr) return;
     using Handler = void (*)(const char* file, int line, const char* function, int error, const char* format, ...);
     using SetHandler = int (*)(Handler);
-    if (const auto set = reinterpret_cast<SetHandler>(::dlsym(library, "snd_lib_error_set_handler")))
-        set(say_nothing);
+    if (const auto set = reinterpret_cast<SetHandler>(::dlsym(library, "snd_lib_error_set_handler"))) set(say_nothing);
 }
 
 }  // namespace
