@@ -16,6 +16,9 @@ namespace calot::app {
 
 namespace {
 
+/// Scenes draw smoke off as an assistant would who never tires. Here the trainee has the suction.
+constexpr const char* kLingeringSmoke = "smoke.suction_per_s=0.25";
+
 /// Physics has a core of its own and drawing another; more than a few threads do not help a tick this short.
 int physics_threads(int wanted) {
     if (wanted > 0) return wanted;
@@ -42,7 +45,8 @@ int view(const ViewOptions& options) {
     trainer.make_scene = [standard, &options](const window::SceneWish& wish) {
         SceneChoice choice = standard;
         if (!wish.scene.empty()) choice.path = viewer::scene_file(wish.scene);
-        choice.assignments = wish.assignments;
+        choice.assignments = {kLingeringSmoke};
+        choice.assignments.insert(choice.assignments.end(), wish.assignments.begin(), wish.assignments.end());
         if (wish.scene.empty())  // the command line has the last word
             choice.assignments.insert(choice.assignments.end(), options.scene.assignments.begin(),
                                       options.scene.assignments.end());

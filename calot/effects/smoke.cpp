@@ -25,6 +25,7 @@ constexpr float kSwirlDrift_per_s = 0.7f;         ///< how fast they change, in 
 constexpr double kCooling_per_s = 2.0;            ///< buoyancy fades as cool gas mixes in
 constexpr float kDiffusivity_m2_per_s = 2.5e-5f;  ///< vapour in carbon dioxide has 1.6e-5, small eddies add to it
 constexpr double kFogEvaporation_per_s = 1.5;     ///< insufflated gas is dry
+constexpr double kSuction_per_s = 3.5;            ///< by the surgeon's own suction, at full
 constexpr float kOldest_s = 8.0f;
 constexpr double kThinnest_kg = 0.02 * kPuff_kg;  ///< less mass than this cannot be seen
 constexpr double kGas_K = 306.0, kBoiling_K = 373.0;
@@ -40,13 +41,13 @@ struct Smoke::Stride {
     Vec3f up, drift;                      ///< drift: where the swirls have moved to
     float slowed, cooled, spared, dried;  ///< what drag, cooling, suction and evaporation leave
 
-    Stride(const SmokeParameters& parameters, double dt, double time_s)
+    Stride(const SmokeParameters& parameters, double dt, double time_s, bool suction)
         : dt_s(static_cast<float>(dt)),
           up(parameters.up),
           drift(kSwirlDrift_per_s * static_cast<float>(time_s) * up),
           slowed(static_cast<float>(std::exp(-kDrag_per_s * dt))),
           cooled(static_cast<float>(std::exp(-kCooling_per_s * dt))),
-          spared(static_cast<float>(std::exp(-parameters.suction_per_s * dt))),
+          spared(static_cast<float>(std::exp(-(parameters.suction_per_s + (suction ? kSuction_per_s : 0.0)) * dt))),
           dried(static_cast<float>(std::exp(-kFogEvaporation_per_s * dt))) {}
 };
 
@@ -65,12 +66,12 @@ double Smoke::particles_kg() const {
     return sum;
 }
 
-void Smoke::step(const tissue::Exchange& exchange, const std::vector<Vec3f>& world_m, std::int64_t tick,
-                 double tick_s) {
+void Smoke::step(const tissue::Exchange& exchange, const std::vector<Vec3f>& world_m, std::int64_t tick, double tick_s,
+                 bool suction) {
     assert(world_m.size() >= exchange.gas.size());
     collect(exchange, world_m);
 
-    const Stride stride(parameters_, kMoveEvery * tick_s, static_cast<double>(tick) * tick_s);
+    const Stride stride(parameters_, kMoveEvery * tick_s, static_cast<double>(tick) * tick_s, suction);
     const auto turn = static_cast<std::uint32_t>(tick % kMoveEvery);
     std::size_t kept = 0;
     for (SmokeParticle& particle : particles_) {

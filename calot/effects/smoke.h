@@ -51,8 +51,9 @@ class Smoke {
   public:
     explicit Smoke(const SmokeParameters& parameters = {});
     /// Collects this tick's Exchange::gas; `world_m` gives the place of each event. Every particle moves each tenth
-    /// tick, a tenth of them in each.
-    void step(const tissue::Exchange& exchange, const std::vector<Vec3f>& world_m, std::int64_t tick, double tick_s);
+    /// tick, a tenth of them in each. `suction`: the surgeon draws smoke off.
+    void step(const tissue::Exchange& exchange, const std::vector<Vec3f>& world_m, std::int64_t tick, double tick_s,
+              bool suction = false);
     const std::vector<SmokeParticle>& particles() const { return particles_; }
 
     // Where the mass is: emitted = pending + in particles + drawn off + faded.

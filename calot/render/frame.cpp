@@ -6,12 +6,12 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "calot/base/random.h"
+#include "calot/effects/bleeding.h"
 
 namespace calot::render {
 
 namespace {
 
-constexpr double kPulse_per_s = 1.2;
 constexpr double kFramesPerSecond = 30.0;  ///< of flicker and grain
 
 double distance_to(const tissue::Capsule& capsule, const Vec3& p) {
@@ -51,12 +51,6 @@ glm::vec4 find_spark(const View& view, std::int64_t frame) {
 
 }  // namespace
 
-float pulse_at(double time_s) {
-    const double phase = time_s * kPulse_per_s - std::floor(time_s * kPulse_per_s);
-    auto wave = [&](double at, double width) { return std::exp(-(phase - at) * (phase - at) / (width * width)); };
-    return static_cast<float>(std::min(1.0, wave(0.16, 0.10) + 0.40 * wave(0.42, 0.13)));
-}
-
 FrameUniforms make_frame(const View& view, int width, int height) {
     const Camera& camera = view.camera;
     FrameUniforms frame{};
@@ -83,7 +77,7 @@ FrameUniforms make_frame(const View& view, int width, int height) {
     frame.projection = glm::vec4(static_cast<float>(tan_x), static_cast<float>(tan_y), static_cast<float>(kNear_m),
                                  static_cast<float>(kFar_m));
     frame.round = glm::vec4(static_cast<float>(diameter / width), static_cast<float>(diameter / height),
-                            static_cast<float>(kBarrel), pulse_at(view.time_s));
+                            static_cast<float>(kBarrel), effects::pulse_at(view.time_s));
     frame.pixels = glm::vec4(static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
                              1.0f / static_cast<float>(height));
     for (std::size_t k = 0; k < kMaxCapsules; ++k) {
@@ -94,6 +88,7 @@ FrameUniforms make_frame(const View& view, int width, int height) {
         frame.capsule_a[k] = glm::vec4(Vec3f(capsule.a_m), static_cast<float>(capsule.radius_m));
         frame.capsule_b[k] = glm::vec4(Vec3f(capsule.b_m), capsule.bare ? 1.0f : 0.0f);
     }
+    frame.lens = glm::vec4(view.lens.fog, view.lens.smear, view.lens.seed, 0.0f);
     frame.counts = glm::ivec4(static_cast<int>(view.paint), static_cast<int>(frame_number % 64), 0, 0);
     return frame;
 }

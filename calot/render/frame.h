@@ -29,14 +29,12 @@ struct FrameUniforms {
     glm::vec4 pixels;
     std::array<glm::vec4, kMaxCapsules> capsule_a;
     std::array<glm::vec4, kMaxCapsules> capsule_b;
+    glm::vec4 lens;
     glm::ivec4 counts;
 };
-static_assert(sizeof(FrameUniforms) == 4 * (32 + 4 * 9 + 8 * kMaxCapsules));
+static_assert(sizeof(FrameUniforms) == 4 * (32 + 4 * 10 + 8 * kMaxCapsules));
 
 /// A pure function of the view and the size of the scene's target.
 FrameUniforms make_frame(const View& view, int width, int height);
-
-/// Arterial pressure over a beat, 0 to about 1: quick rise, slow fall, dicrotic wave.
-float pulse_at(double time_s);
 
 }  // namespace calot::render

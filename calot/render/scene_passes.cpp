@@ -14,7 +14,7 @@ using gl::Target;
 using gl::Texture;
 using gl::VertexArray;
 
-static_assert(sizeof(TissueVertex) == 18 * sizeof(float), "the tissue's attributes are uploaded as they lie");
+static_assert(sizeof(TissueVertex) == 19 * sizeof(float), "the tissue's attributes are uploaded as they lie");
 static_assert(sizeof(InstrumentVertex) == 13 * sizeof(float));
 
 constexpr float kSparkSize_m = 0.0045f;  ///< half of its halo's edge
@@ -51,7 +51,7 @@ const char* look_function(Look look) {
 /// Attributes that organs have not: at body temperature, never burnt.
 void set_organ_attributes() {
     glVertexAttrib4f(3, 310.15f, 310.15f, 0.0f, 0.0f);
-    glVertexAttrib1f(4, 0.0f);
+    glVertexAttrib2f(4, 0.0f, 0.0f);
     glVertexAttrib4f(5, 0.0f, 0.0f, 0.0f, 0.0f);
 }
 
@@ -81,7 +81,8 @@ ScenePasses::ScenePasses(Quality quality, const std::string& defines)
       instrument_colour_("instrument", defines, {shaders::kFrame, shaders::kInstrumentVertex},
                          {shaders::kFrame, shaders::kLight, shaders::kInstrumentFragment}),
       spark_("spark", defines, {shaders::kFrame, shaders::kSparkVertex}, {shaders::kFrame, shaders::kSparkFragment}),
-      smoke_("smoke", defines, {shaders::kFrame, shaders::kSmokeVertex}, {shaders::kFrame, shaders::kSmokeFragment}) {
+      smoke_("smoke", defines, {shaders::kFrame, shaders::kSmokeVertex}, {shaders::kFrame, shaders::kSmokeFragment}),
+      drop_("drops", defines, {shaders::kFrame, shaders::kDropVertex}, {shaders::kFrame, shaders::kDropFragment}) {
     for (const Program* program : {&tissue_colour_, &instrument_colour_, &smoke_}) set_samplers(*program);
     upload_noise();
     lay_out_attributes();
@@ -103,7 +104,7 @@ void ScenePasses::upload_noise() {
 void ScenePasses::lay_out_attributes() {
     tissue_.array.bind();
     tissue_.vertices.bind();
-    const int components[] = {3, 3, 3, 4, 1, 4};
+    const int components[] = {3, 3, 3, 4, 2, 4};
     std::size_t offset = 0;
     for (GLuint location = 0; location < 6; ++location) {
         VertexArray::attribute(location, components[location], sizeof(TissueVertex), offset);
@@ -123,6 +124,11 @@ void ScenePasses::lay_out_attributes() {
     smoke_buffer_.bind();
     for (GLuint location = 0; location < 3; ++location)
         VertexArray::attribute(location, 4, sizeof(SmokeSprite), location * 4 * sizeof(float), 1);
+
+    drop_array_.bind();
+    drop_buffer_.bind();
+    for (GLuint location = 0; location < 2; ++location)
+        VertexArray::attribute(location, 4, sizeof(DropSprite), location * 4 * sizeof(float), 1);
     glBindVertexArray(0);
 }
 
@@ -144,6 +150,8 @@ void ScenePasses::upload(const View& view, int width, int height) {
     upload_organs(view);
     make_sprites(view, sprites_);
     smoke_buffer_.upload(sprites_.data(), sprites_.size() * sizeof(SmokeSprite));
+    make_drops(view, drops_);
+    drop_buffer_.upload(drops_.data(), drops_.size() * sizeof(DropSprite));
 }
 
 void ScenePasses::upload_organs(const View& view) {
@@ -233,8 +241,9 @@ void ScenePasses::draw_colour(const Target& scene) {
         organ.mesh.draw();
     }
     glDepthMask(GL_FALSE);
-    // The spark adds its light.
     glEnable(GL_BLEND);
+    draw_drops();
+    // The spark adds its light.
     glBlendFunc(GL_ONE, GL_ONE);
     glDisable(GL_CULL_FACE);
     spark_.use();
@@ -245,6 +254,15 @@ void ScenePasses::draw_colour(const Target& scene) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDepthMask(GL_TRUE);
+}
+
+void ScenePasses::draw_drops() const {
+    if (drops_.empty()) return;
+    glDisable(GL_CULL_FACE);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    drop_.use();
+    drop_array_.bind();
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(drops_.size()));
 }
 
 void ScenePasses::draw_smoke(const Target& smoke, const Target& scene) const {

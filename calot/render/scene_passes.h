@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calot/render/drop_sprites.h"
 #include "calot/render/gl.h"
 #include "calot/render/instrument_mesh.h"
 #include "calot/render/smoke_sprites.h"
@@ -43,6 +44,7 @@ class ScenePasses {
 
     void lay_out_attributes();
     void upload_noise();
+    void draw_drops() const;
     void upload_organs(const View& view);
     gl::Program tissue_program(const char* name, const std::string& more) const;
     const gl::Program& organ_program(Look look);
@@ -63,9 +65,12 @@ class ScenePasses {
     gl::VertexArray smoke_array_;
     gl::Buffer smoke_buffer_{GL_ARRAY_BUFFER};
     std::vector<SmokeSprite> sprites_;
+    gl::VertexArray drop_array_;
+    gl::Buffer drop_buffer_{GL_ARRAY_BUFFER};
+    std::vector<DropSprite> drops_;
 
     gl::Program mask_depth_, tissue_depth_, instrument_depth_;
-    gl::Program tissue_colour_, instrument_colour_, spark_, smoke_;
+    gl::Program tissue_colour_, instrument_colour_, spark_, smoke_, drop_;
     std::array<std::unique_ptr<gl::Program>, 7> organ_colour_;  ///< made when a look is first drawn
 };
 

@@ -12,6 +12,10 @@ namespace calot::render {
 
 namespace {
 
+/// A film of blood this thick, averaged over the hexels about a vertex (of which a third has a surface), hides what is
+/// under it: at 0.1 mm whole blood lets through a tenth of green light.
+constexpr float kOpaqueFilm_m = 0.05e-3f;
+
 bool contains(const std::string& text, const char* word) {
     return text.find(word) != std::string::npos;
 }
@@ -33,10 +37,12 @@ int weight_slot(const std::string& material) {
 /// What a vertex takes from the hexels around it.
 class Attributes {
   public:
-    Attributes(const tissue::Model& model, const tissue::State& state, std::span<const float> temperature_K)
+    Attributes(const tissue::Model& model, const tissue::State& state, std::span<const float> temperature_K,
+               std::span<const float> film_m)
         : model_(model),
           state_(state),
           temperature_K_(temperature_K),
+          film_m_(film_m),
           inverse_spacing_(static_cast<float>(1.0 / model.hexels.spacing_m)) {
         std::array<int, 3> strides{model.hexels.stride.x, model.hexels.stride.y, model.hexels.stride.z};
         std::sort(strides.begin(), strides.end());
@@ -68,6 +74,7 @@ class Attributes {
 
     void average_present(std::int64_t owner, const Vec3f& from_owner, TissueVertex& vertex) const {
         const Lattice& lattice = model_.hexels;
+        float film = 0.0f;
         float sum = 0.0f, temperature = 0.0f, peak = 0.0f, damage = 0.0f, dryness = 0.0f;
         float weights[4] = {0, 0, 0, 0};
         for (int z = -1; z <= 1; ++z)
@@ -80,6 +87,7 @@ class Attributes {
                     const auto h = static_cast<std::size_t>(hexel);
                     const std::size_t material = model_.hexel_material[h];
                     sum += w;
+                    if (!film_m_.empty()) film += w * film_m_[h];
                     temperature += w * (temperature_K_.empty() ? body_K() : temperature_K_[h]);
                     peak += w * state_.peak_temperature_K[h];
                     damage += w * std::min(state_.damage[h], 20.0f);
@@ -91,6 +99,7 @@ class Attributes {
         vertex.peak_temperature_K = sum > 0.0f ? peak * share : body_K();
         vertex.damage = damage * share;
         vertex.dryness = dryness * share;
+        vertex.blood = std::min(1.0f, film * share / kOpaqueFilm_m);
         for (int k = 0; k < 4; ++k) vertex.look_weights[k] = weights[k] * share;
         if (sum <= 0.0f) vertex.look_weights[0] = 1.0f;
     }
@@ -132,6 +141,7 @@ class Attributes {
     const tissue::Model& model_;
     const tissue::State& state_;
     std::span<const float> temperature_K_;
+    std::span<const float> film_m_;
     float inverse_spacing_;
     std::int64_t middle_stride_, slow_stride_;
     std::array<int, 256> slot_{};
@@ -154,7 +164,7 @@ void fill_tissue(const tissue::Model& model, const tissue::State& state, std::sp
     assert(surface.rest_normal.size() == count && surface.owner.size() == count && surface.world_m.size() == count);
     assert(surface.deformation_gradient.empty() || surface.deformation_gradient.size() == count);
     vertices.resize(count);
-    const Attributes attributes(model, state, temperature_K);
+    const Attributes attributes(model, state, temperature_K, surface.film_m);
     parallel_for("render.fill_tissue", 0, static_cast<std::int64_t>(count), 1024,
                  [&](std::int64_t low, std::int64_t high) {
                      for (std::int64_t k = low; k < high; ++k) {

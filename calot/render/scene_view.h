@@ -20,6 +20,7 @@ struct SurfaceVertices {
     std::span<const std::int64_t> owner;  ///< a hexel near each vertex
     std::span<const Vec3f> world_m;
     std::span<const Mat3f> deformation_gradient;
+    std::span<const float> film_m{};  ///< of blood, over hexels (effects::Bleeding); empty = none
 };
 
 /// Fills `vertices` (resized). `temperature_K` is thermal::Work's array over hexels; empty = all at body temperature.

@@ -14,6 +14,8 @@ extern const char* const kInstrumentVertex;
 extern const char* const kInstrumentFragment;
 extern const char* const kSmokeVertex;
 extern const char* const kSmokeFragment;
+extern const char* const kDropVertex;
+extern const char* const kDropFragment;
 extern const char* const kSparkVertex;
 extern const char* const kSparkFragment;
 extern const char* const kMaskVertex;    ///< the black ring around the round image, nearest of all

@@ -16,6 +16,7 @@ layout(std140) uniform Frame {
     vec4 u_pixels;       // size of the scene target, 1 / size
     vec4 u_capsule_a[CAPSULES]; // end, radius
     vec4 u_capsule_b[CAPSULES]; // end, 1 = bare
+    vec4 u_lens;         // fog, smear 0..1, pattern
     ivec4 u_counts;      // map (Paint), frame
 };
 

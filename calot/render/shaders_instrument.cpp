@@ -83,6 +83,40 @@ void main() {
 }
 )";
 
+// Drops of blood and water: billboards that look like small spheres.
+const char* const kDropVertex = R"(
+layout(location = 0) in vec4 a_place;    // position, radius [m]
+layout(location = 1) in vec4 a_stretch;  // direction on the screen, length, 1 = water
+out vec2 v_corner;
+flat out float v_water;
+void main() {
+    v_corner = vec2(float((gl_VertexID & 1) * 2) - 1.0, float(gl_VertexID & 2) - 1.0);
+    v_water = a_stretch.w;
+    vec2 along = a_stretch.xy;
+    vec2 offset = along * v_corner.x * (1.0 + a_stretch.z) + vec2(-along.y, along.x) * v_corner.y;
+    vec4 clip = u_view_projection * vec4(a_place.xyz, 1.0);
+    clip.xy += offset * a_place.w / u_projection.xy;
+    gl_Position = clip;
+}
+)";
+
+const char* const kDropFragment = R"(
+in vec2 v_corner;
+flat in float v_water;
+out vec4 o_colour;
+void main() {
+    float r2 = dot(v_corner, v_corner);
+    if (r2 > 1.0) discard;
+    float up = sqrt(1.0 - r2);   // of the normal, towards the eye
+    float shine = pow(clamp(dot(normalize(vec3(v_corner, up)), normalize(vec3(-0.35, 0.35, 0.87))), 0.0, 1.0), 60.0);
+    vec3 blood = vec3(0.34, 0.010, 0.010) * (0.35 + 0.65 * up) + 0.9 * shine;
+    vec3 water = vec3(0.75, 0.72, 0.70) * (0.10 + 0.25 * (1.0 - up)) + 1.1 * shine;
+    float alpha = mix(0.96, 0.16 + 0.45 * (1.0 - up) + shine, v_water);
+    alpha = clamp(alpha, 0.0, 1.0) * smoothstep(1.0, 0.8, r2);
+    o_colour = vec4(encode(mix(blood, water, v_water)) * alpha, alpha);
+}
+)";
+
 const char* const kSparkVertex = R"(
 uniform float u_size;   // m
 out vec2 v_corner;

@@ -89,7 +89,7 @@ void main() {
 }
 )";
 
-// The camera: barrel distortion, smoke over the scene, bloom, depth of field, filmic curve, vignette. Alpha = luma.
+// The camera: barrel distortion, smoke over the scene, bloom, depth of field, filmic curve, vignette. Alpha = luma for the finish.
 const char* const kComposeFragment = R"(
 in vec2 v_uv;
 uniform sampler2D u_scene;
@@ -98,14 +98,38 @@ uniform sampler2D u_bloom;
 uniform sampler2D u_depth;
 out vec4 o_colour;
 
+uniform sampler3D u_smooth;
+uniform sampler3D u_bump;
+
 float noise(vec2 at) { return fract(52.9829189 * fract(dot(at, vec2(0.06711056, 0.00583715)))); }
+
+// Eight looks around a place, as through a lens that scatters.
+vec3 scattered(vec2 uv, float reach) {
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < 8; ++k) {
+        float angle = 0.785398 * float(k) + 0.4;
+        vec2 at = uv + reach * (0.5 + 0.5 * float(k & 1)) * vec2(cos(angle) * u_pixels.y * u_pixels.z, sin(angle));
+        sum += decode(texture(u_scene, clamp(at, 0.002, 0.998)).rgb);
+    }
+    return 0.125 * sum;
+}
 
 void main() {
     vec2 round_at = (2.0 * v_uv - 1.0) / u_round.xy;
     float r2 = dot(round_at, round_at);
     if (r2 > 1.0) { o_colour = vec4(0.0, 0.0, 0.0, 0.0); return; }
+    // Drops and film on the front lens bend what is behind them.
+    float smeared = 0.0;
+    vec2 bent = vec2(0.0);
+    if (u_lens.y > 0.0) {
+        vec4 film = texture(u_smooth, vec3(0.45 * round_at, u_lens.z));
+        vec4 grease = texture(u_bump, vec3(0.30 * round_at.yx, u_lens.z + 0.37));
+        smeared = smoothstep(0.62 - 0.34 * u_lens.y, 0.74 - 0.20 * u_lens.y, film.r);
+        bent = smeared * u_lens.y * 0.035 * (grease.rg - 0.5 + 2.0 * (film.gb - 0.5));
+    }
     float k = u_round.z;
     vec2 uv = 0.5 + 0.5 * round_at * ((1.0 + k * r2) / (1.0 + k)) * u_round.xy;
+    uv += bent;
     vec3 colour = decode(texture(u_scene, uv).rgb);
 #if QUALITY > 0
     // Out of focus in front of and behind the target: a ring of neighbours.
@@ -125,6 +149,15 @@ void main() {
 #if QUALITY > 0
     colour += 0.16 * decode(texture(u_bloom, uv).rgb);
 #endif
+    if (u_lens.x > 0.0 || smeared > 0.0) {
+        // Condensation comes from the rim; grease is uneven. Both scatter, and lift the blacks.
+        float cloud = texture(u_smooth, vec3(0.8 * round_at, 0.5 + u_lens.z)).r;
+        float fog = clamp(u_lens.x * (0.75 + 0.45 * r2 + 1.1 * (cloud - 0.5)), 0.0, 0.97);
+        float dim = clamp(fog + 0.75 * smeared * min(1.0, 1.4 * u_lens.y), 0.0, 0.97);
+        colour = mix(colour, scattered(uv, 0.012 + 0.05 * dim), smoothstep(0.0, 0.45, dim));
+        colour = mix(colour, vec3(0.36, 0.31, 0.29), 0.80 * fog * fog + 0.15 * fog);
+        colour *= 1.0 - 0.35 * smeared * u_lens.y * vec3(0.6, 0.8, 1.0);
+    }
     // Filmic curve (Narkowicz 2015, after ACES), a little warm.
     colour *= vec3(1.05, 1.0, 0.96) * 0.95;
     colour *= 1.0 - 0.45 * r2 * r2;
@@ -134,7 +167,11 @@ void main() {
 #if QUALITY == 0
     colour += (noise(gl_FragCoord.xy + 5.588 * float(u_counts.y)) - 0.5) * 0.020 * edge;
 #endif
+#if QUALITY == 0
+    o_colour = vec4(colour, 1.0);   // the picture itself
+#else
     o_colour = vec4(colour, dot(colour, vec3(0.30, 0.59, 0.11)));
+#endif
 }
 )";
 

@@ -7,13 +7,13 @@ layout(location = 0) in vec3 a_world;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec3 a_rest;
 layout(location = 3) in vec4 a_heat;      // temperature, peak [K], damage, dryness
-layout(location = 4) in float a_exposure;
+layout(location = 4) in vec2 a_exposure;  // laid bare, blood
 layout(location = 5) in vec4 a_weights;   // fat, duct, artery, gallbladder
 out vec3 v_world;
 out vec3 v_normal;
 out vec3 v_rest;     // mm
 out vec4 v_burn;     // temperature, peak [C], coagulated 0..1, dryness
-out float v_exposure;
+out vec2 v_exposure;
 out vec4 v_weights;
 invariant gl_Position;
 void main() {
@@ -147,7 +147,7 @@ in vec3 v_world;
 in vec3 v_normal;
 in vec3 v_rest;
 in vec4 v_burn;
-in float v_exposure;
+in vec2 v_exposure;
 in vec4 v_weights;
 uniform sampler3D u_lobules;
 uniform sampler3D u_smooth;
@@ -243,7 +243,7 @@ void main() {
     float browned = smoothstep(125.0, 200.0, peak);
     float charred = smoothstep(215.0, 285.0, peak);
     // Laid bare: raw, frothy, wet, with thin pale strands.
-    float bare = smoothstep(0.15, 0.65, v_exposure);
+    float bare = smoothstep(0.15, 0.65, v_exposure.x);
     float froth = 1.0 - smoothstep(0.02, 0.30, s.cells);
     float strand = level_line(s.fine.b, 0.05) * smoothstep(0.45, 0.6, s.base.a);
     vec3 raw = look.albedo * mix(vec3(0.95, 0.74, 0.52), vec3(0.92, 0.46, 0.34), smoothstep(0.42, 0.60, s.fine.r));
@@ -268,6 +268,17 @@ void main() {
     look.coat_rough = mix(look.coat_rough, 0.36, dry);
     look.bump += 0.16 * charred + 0.05 * browned;
     look.pillow *= 1.0 - 0.6 * charred;
+    // Blood over all of it, thicker in creases, with an edge that the surface breaks up.
+    if (v_exposure.y > 0.004) {
+        float film = v_exposure.y * (1.15 - 0.5 * s.pillow) + 0.10 * (s.fine.r - 0.5) * (1.0 - v_exposure.y);
+        float cover = smoothstep(0.03, 0.30, film);
+        vec3 blood = mix(vec3(0.44, 0.012, 0.010), vec3(0.17, 0.003, 0.004), smoothstep(0.15, 0.9, film));
+        look.albedo = mix(look.albedo, blood, 0.93 * cover);
+        look.bump *= 1.0 - 0.75 * cover;
+        look.pillow *= 1.0 - 0.45 * cover;
+        look.coat = mix(look.coat, 1.5, cover);
+        look.coat_rough = mix(look.coat_rough, 0.10, cover);
+    }
     // Embers, only while hot.
     float ember = smoothstep(230.0, 330.0, v_burn.x) * (0.25 + crack);
     glow = vec3(1.0, 0.22, 0.03) * 0.5 * ember;

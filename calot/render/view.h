@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "calot/effects/bleeding.h"
 #include "calot/effects/smoke.h"
 #include "calot/surface/mesh.h"
 #include "calot/tissue/exchange.h"
@@ -23,6 +24,7 @@ struct TissueVertex {
     float damage = 0.0f;                   ///< Omega
     float dryness = 0.0f;                  ///< 0 = all its water, 1 = dry
     float exposure = 0.0f;                 ///< 0 = surface of the start, 1 = laid bare by burning
+    float blood = 0.0f;                    ///< 0 = none, 1 = so thick that nothing shines through
     float look_weights[4] = {1, 0, 0, 0};  ///< fat, duct, artery, gallbladder; sums to 1
 };
 
@@ -42,6 +44,13 @@ struct Camera {
 /// How tissue is coloured: as it looks, or as a map of its peak temperature or its Arrhenius injury (organs grey).
 enum class Paint { natural, peak_temperature, injury };
 
+/// What is on the front lens.
+struct Lens {
+    float fog = 0.0f;    ///< 0 clear ... 1 blind
+    float smear = 0.0f;  ///< drops and film, 0 ... 1
+    float seed = 0.0f;   ///< another pattern for every number
+};
+
 struct View {
     Camera camera;
     Paint paint = Paint::natural;
@@ -54,6 +63,8 @@ struct View {
     std::vector<tissue::Capsule> instrument;         ///< the hook; the renderer models it beautifully from its capsules
     bool energised = false;
     std::vector<effects::SmokeParticle> smoke;
+    std::vector<effects::BloodDrop> drops;
+    Lens lens;
 };
 
 enum class Quality { low, medium, high };

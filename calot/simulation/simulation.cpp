@@ -43,7 +43,8 @@ Work::Work(const tissue::Model& model, const tissue::State& state, const instrum
       electric(electric::make_work(model)),
       thermal(thermal::make_work(model, state)),
       surface(model),
-      smoke(smoke) {
+      smoke(smoke),
+      bleeding(model) {
     tissue::reserve_exchange(model, exchange);
     gas_rest_m.reserve(exchange.gas.capacity());
     gas_world_m.reserve(exchange.gas.capacity());

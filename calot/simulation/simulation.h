@@ -34,6 +34,9 @@ class Simulation {
     /// One step of Model::tick_s. Returns false, and does nothing more, once State::status is not ok.
     bool tick(const tissue::Input& input);
 
+    /// Suction and irrigation from the next tick on. They change what is seen, never the state.
+    void set_fluids(const effects::Fluids& fluids) { work_.fluids = fluids; }
+
     double time_s() const { return static_cast<double>(state_.tick) * setup_->model.tick_s; }
     const Setup& setup() const { return *setup_; }
     const tissue::Model& model() const { return setup_->model; }

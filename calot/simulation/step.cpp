@@ -80,7 +80,8 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     work.surface.update_dirty_blocks(model, state, exchange);
     clock.lap(Stage::surface);
 
-    work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s);
+    work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s, work.fluids.suction);
+    work.bleeding.step(model, state, exchange, input.hook, work.fluids);
     clock.lap(Stage::smoke);
 
     state.hook = input.hook;

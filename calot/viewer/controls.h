@@ -24,6 +24,7 @@ struct Controls {
     bool blended_cut = false;
     bool suction = false;
     bool irrigation = false;
+    bool wipe_tip = false;  ///< the char on the hook
     bool paused = false;
     std::int64_t sequence = 0;  ///< counts up with every sample
     double sampled_s = 0.0;     ///< steady clock, when the devices were read

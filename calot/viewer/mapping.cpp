@@ -56,6 +56,7 @@ void Mapping::apply(const Devices& devices, double dt_s, Scope& scope) {
     controls_.yellow = devices.is(Action::yellow_pedal);
     controls_.blue = devices.is(Action::blue_pedal);
     controls_.suction = devices.is(Action::suction);
+    controls_.wipe_tip = devices.is(Action::wipe_tip);
     controls_.irrigation = devices.is(Action::irrigation);
     ++controls_.sequence;
 }

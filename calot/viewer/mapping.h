@@ -22,6 +22,7 @@ enum class Action {
     left_hand,  ///< mouse and roll move the grasper while it is held
     suction,
     irrigation,
+    wipe_tip,  ///< char off the hook
     scope_left,
     scope_right,
     scope_up,

@@ -15,10 +15,10 @@ void Picture::fill(const simulation::Simulation& run, const tissue::Input& input
     run.world_surface(world_);
     view.camera = camera_;
     view.time_s = run.time_s();
-    render::fill_tissue(
-        run.model(), run.state(), run.work().thermal.temperature_K,
-        {mesh.position_m, mesh.normal, run.surface().owner(), world_.position_m, world_.deformation_gradient},
-        view.tissue);
+    render::fill_tissue(run.model(), run.state(), run.work().thermal.temperature_K,
+                        {mesh.position_m, mesh.normal, run.surface().owner(), world_.position_m,
+                         world_.deformation_gradient, run.work().bleeding.film_m()},
+                        view.tissue);
     if (view.tissue_index_version != run.surface().version() || view.tissue_index.empty()) {
         view.tissue_index = mesh.index;
         view.tissue_index_version = run.surface().version();
@@ -27,6 +27,7 @@ void Picture::fill(const simulation::Simulation& run, const tissue::Input& input
     view.instrument = run.capsules();
     view.energised = input.pedal;
     view.smoke = run.work().smoke.particles();
+    view.drops = run.work().bleeding.drops();
 }
 
 }  // namespace calot::viewer

@@ -26,13 +26,15 @@ Theatre theatre_of(const simulation::Setup& setup) {
     theatre.left.port_m =
         landmark_or(setup.anatomy, "grasper_trocar", centre_m + Vec3(-across.x, 0.6 * across.y, across.z));
     const auto& keys = setup.script.keyframes();
-    if (!keys.empty()) {
-        theatre.right_start.tip_m = within_reach(keys.front().tip_m, theatre.right);
-        theatre.right_start.roll_rad = keys.front().roll_rad;
-    } else {
-        theatre.right_start.tip_m = within_reach(centre_m + Vec3(0.015, 0.008, 0.03), theatre.right);
-    }
-    theatre.left_start.tip_m = within_reach(centre_m + Vec3(-0.025, 0.012, 0.028), theatre.left);
+    if (!keys.empty()) theatre.right_start.roll_rad = keys.front().roll_rad;
+    // Both tips in sight, clear of the tissue: a third of the way from it to the lens.
+    render::Camera camera;
+    camera.eye_m = setup.camera.eye_m;
+    camera.target_m = centre_m;
+    camera.field_of_view_deg = setup.camera.field_of_view_deg;
+    const Vec3 between_m = centre_m + 0.33 * (camera.eye_m - centre_m);
+    theatre.right_start.tip_m = moved_in_view(between_m, camera, theatre.right, 0.16, 0.14, 0.0);
+    theatre.left_start.tip_m = moved_in_view(between_m, camera, theatre.left, -0.26, 0.16, 0.0);
     return theatre;
 }
 
@@ -63,11 +65,13 @@ tissue::Input SessionCore::input_for(const Controls& controls) {
     input.mode = controls.yellow ? (controls.blended_cut ? tissue::GeneratorMode::blend : tissue::GeneratorMode::cut)
                                  : tissue::GeneratorMode::coag;
     input.power_setting_W = controls.yellow ? controls.cut_W : controls.blue ? controls.coag_W : 0.0;
+    input.wipe_tip = controls.wipe_tip;
     return input;
 }
 
 bool SessionCore::tick(const Controls& controls) {
     input_ = input_for(controls);
+    run_->set_fluids({controls.suction, controls.irrigation});
     const bool ok = run_->tick(input_);
     double gas_kg = 0.0;
     for (const tissue::GasEvent& event : run_->work().exchange.gas)
@@ -88,6 +92,9 @@ void SessionCore::fill(Snapshot& snapshot) {
     snapshot.hook_force_N = state.hook_force_N;
     snapshot.tip_m = right_.tip_m();
     snapshot.boiling_kg_per_s = boiling_kg_per_s_;
+    snapshot.fluids = run_->work().fluids;
+    snapshot.bleeding_m3_per_s = run_->work().bleeding.flow_m3_per_s();
+    snapshot.blood_lost_m3 = run_->work().bleeding.lost_m3();
     snapshot.status = state.status;
     snapshot.hottest_K = 310.15f;
     for (const tissue::NearHexel& near : run_->work().exchange.near)

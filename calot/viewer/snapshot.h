@@ -18,8 +18,7 @@ struct Pace {
     double picture_us = 0.0;      ///< taken from the physics to fill the last picture
 };
 
-struct Snapshot {
-    render::View view;  ///< the window sets its camera
+struct Figures {
     std::int64_t tick = 0;
     double time_s = 0.0;
     tissue::GeneratorState generator;
@@ -32,7 +31,14 @@ struct Snapshot {
     Pace pace;
     std::int64_t sequence = 0;  ///< of the controls that it answers
     double sampled_s = 0.0;     ///< when those were read
+    effects::Fluids fluids;
+    double bleeding_m3_per_s = 0.0;
+    double blood_lost_m3 = 0.0;
     bool paused = false;
+};
+
+struct Snapshot : Figures {
+    render::View view;  ///< the window sets its camera
 };
 
 }  // namespace calot::viewer

@@ -66,6 +66,9 @@ bool GlfwWindow::should_close() const {
 void GlfwWindow::poll() {
     glfwPollEvents();
 }
+void GlfwWindow::wait(double most_s) {
+    glfwWaitEventsTimeout(most_s);
+}
 void GlfwWindow::swap() {
     glfwSwapBuffers(window_);
 }

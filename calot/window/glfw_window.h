@@ -38,6 +38,8 @@ class GlfwWindow {
 
     bool should_close() const;
     void poll();
+    /// Sleeps until something happens, at most this long.
+    void wait(double most_s);
     void swap();
     /// In pixels; (0, 0) while it is iconified.
     void size(int& width, int& height) const;

@@ -54,7 +54,7 @@ void pedal_box(const Gui& gui, const char* name, double setting_W, const ImVec4&
 void draw_generator(const Gui& gui, const Language& text, const HudContent& content) {
     const float u = gui.unit(), width = 300.0f * u;
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const viewer::Snapshot& shot = content.snapshot;
+    const viewer::Figures& shot = content.snapshot;
     const bool cutting = shot.input.pedal && shot.input.mode != tissue::GeneratorMode::coag;
     const bool coagulating = shot.input.pedal && !cutting;
     if (begin_panel("generator", ImVec2(kMargin * u, screen.y - kMargin * u), ImVec2(0.0f, 1.0f),
@@ -113,7 +113,7 @@ void draw_pace(const Gui& gui, const Language& text, const HudContent& content) 
 
 /// What must not be overlooked, at the top: time runs slow, the left hand is active, the simulation stopped.
 void draw_banner(const Gui& gui, const Language& text, const HudContent& content) {
-    const viewer::Snapshot& shot = content.snapshot;
+    const viewer::Figures& shot = content.snapshot;
     std::string message;
     ImVec4 tint = colour::kAccent;
     if (!shot.status.ok) {

@@ -23,7 +23,7 @@ struct PictureFigures {
 };
 
 struct HudContent {
-    const viewer::Snapshot& snapshot;
+    const viewer::Figures& snapshot;
     const PictureFigures& figures;
     const Settings& settings;
     const std::string& exercise;

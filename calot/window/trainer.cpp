@@ -1,27 +1,27 @@
 #include "calot/window/trainer.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdlib>
-#include <filesystem>
+#include <cmath>
+#include <cstdint>
 #include <optional>
-#include <thread>
+#include <utility>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
 #include "calot/base/error.h"
-#include "calot/base/parallel.h"
 #include "calot/viewer/data_files.h"
 #include "calot/viewer/language.h"
+#include "calot/viewer/lens.h"
 #include "calot/viewer/loader.h"
-#include "calot/window/canvas.h"
 #include "calot/window/glfw_window.h"
 #include "calot/window/gui.h"
 #include "calot/window/hud.h"
 #include "calot/window/open_page.h"
+#include "calot/window/picture_thread.h"
 #include "calot/window/screens.h"
 #include "calot/window/settings.h"
+#include "calot/window/sound.h"
 
 namespace calot::window {
 
@@ -29,7 +29,9 @@ namespace {
 
 using viewer::steady_s;
 
-constexpr double kFrame_s = 1.0 / 60.0;
+constexpr double kIdleFrame_s = 1.0 / 30.0;  ///< the window is drawn at least so often
+constexpr double kTurn_s = 2e-3;             ///< the devices are read at least so often
+constexpr double kFullSizzle_kg_per_s = 2.0e-5;
 
 enum class Screen { start, loading, practice, paused, debrief, trouble };
 
@@ -39,13 +41,17 @@ class Trainer {
     void run();
 
   private:
-    void frame();
+    void turn();
+    void draw_window();
     void obey_commands();
     void load(int exercise);
     void finish_loading();
     void practise(double dt_s);
+    void begin_practice();
     void end_session();
+    void ask_for_picture();
     void draw_picture(int width, int height);
+    void play_sound();
     void draw_screens();
     void draw_practice();
     void handle(PauseChoice choice);
@@ -63,7 +69,8 @@ class Trainer {
     std::vector<std::string> languages_;
     GlfwWindow window_;
     Gui gui_;
-    Canvas canvas_;
+    PictureThread pictures_;
+    Sound sound_;
 
     Screen screen_ = Screen::start;
     bool help_ = false, settings_open_ = false, quit_ = false, settings_changed_ = false, picture_wanted_ = false;
@@ -76,10 +83,12 @@ class Trainer {
     std::unique_ptr<viewer::Session> session_;
     std::optional<viewer::Mapping> mapping_;
     std::optional<viewer::Scope> scope_;
+    viewer::LensState lens_;
+    PictureWish wished_;
     viewer::Debrief debrief_;
 
-    double now_s_ = steady_s(), last_s_ = now_s_;
-    viewer::RateMeter pictures_;
+    double now_s_ = steady_s(), last_s_ = now_s_, drawn_s_ = 0.0;
+    viewer::RateMeter picture_rate_;
     double latency_s_ = 0.0;
     std::int64_t answered_ = 0;
     bool focused_ = true;
@@ -93,7 +102,7 @@ Trainer::Trainer(const TrainerOptions& options)
       languages_(viewer::Language::available(data_ + "/lang")),
       window_(options.width, options.height, "Calot", options.fullscreen),
       gui_(window_.handle(), window_.content_scale()),
-      canvas_(window_.renderer()) {
+      pictures_(window_.handle(), window_.renderer()) {
     if (!options_.language.empty()) settings_.language = options_.language;
     if (std::find(languages_.begin(), languages_.end(), settings_.language) == languages_.end()) {
         if (!options_.language.empty())
@@ -115,47 +124,63 @@ Trainer::Trainer(const TrainerOptions& options)
 
 void Trainer::apply_settings() {
     if (text_.name() != settings_.language) text_ = viewer::Language(data_ + "/lang", settings_.language);
-    canvas_.choose(settings_.tier);
     if (mapping_) mapping_->sensitivity() = settings_.hands;
 }
 
 void Trainer::run() {
     while (!window_.should_close() && !quit_) {
         window_.poll();
-        frame();
+        turn();
     }
     end_session();
     if (settings_changed_) save_settings(settings_path_, settings_);
 }
 
-void Trainer::frame() {
+void Trainer::turn() {
     now_s_ = steady_s();
     const double dt_s = std::min(0.1, now_s_ - std::exchange(last_s_, now_s_));
     obey_commands();
-    if (screen_ == Screen::loading && loader_->finished()) finish_loading();
+    if (loader_ && loader_->finished()) finish_loading();
     if (has_pause()) practise(dt_s);
+    play_sound();
     window_.capture_mouse(screen_ == Screen::practice && !help_);
+    ask_for_picture();
+    const bool fresh = pictures_.update();
+    if (screen_ == Screen::loading && !loader_ && fresh) begin_practice();
+    if (const std::string trouble = pictures_.take_trouble(); !trouble.empty()) {
+        end_session();
+        trouble_ = trouble;
+        screen_ = Screen::trouble;
+    }
+    if (!fresh && now_s_ - drawn_s_ < kIdleFrame_s) {
+        window_.wait(kTurn_s);
+        return;
+    }
+    draw_window();
+    if (!fresh) return;
+    const double done_s = steady_s();
+    picture_rate_.add(done_s);
+    const viewer::Figures& figures = pictures_.picture().figures;
+    if (figures.sequence > answered_) {
+        answered_ = figures.sequence;
+        latency_s_ += 0.1 * (done_s - figures.sampled_s - latency_s_);
+    }
+}
 
+void Trainer::draw_window() {
+    drawn_s_ = now_s_;
     int width = 0, height = 0;
     window_.size(width, height);
-    if (width > 0 && height > 0) {
-        draw_picture(width, height);
-        gui_.begin_frame(!window_.captured());
-        draw_screens();
-        glBindFramebuffer(GL_FRAMEBUFFER, 0);
-        gui_.end_frame();
-        if (std::exchange(picture_wanted_, false)) take_picture(width, height);
-        window_.swap();
-    }
-    const double done_s = steady_s();
-    pictures_.add(done_s);
-    if (session_ && session_->snapshot().sequence > answered_) {
-        answered_ = session_->snapshot().sequence;
-        latency_s_ += 0.1 * (done_s - session_->snapshot().sampled_s - latency_s_);
-    }
-    // Where nothing waits for the screen (no display to wait for), not faster than one could show.
-    if (done_s - now_s_ < kFrame_s)
-        std::this_thread::sleep_for(std::chrono::duration<double>(kFrame_s - (done_s - now_s_)));
+    if (width == 0 || height == 0) return;
+    glViewport(0, 0, width, height);
+    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    gui_.begin_frame(!window_.captured());
+    draw_picture(width, height);
+    draw_screens();
+    gui_.end_frame();
+    if (std::exchange(picture_wanted_, false)) take_picture(width, height);
+    window_.swap();
 }
 
 void Trainer::obey_commands() {
@@ -175,7 +200,10 @@ void Trainer::obey_commands() {
     if (window_.take(Command::mute)) settings_.muted = !settings_.muted, settings_changed_ = true;
     if (window_.take(Command::fullscreen)) window_.toggle_fullscreen();
     if (window_.take(Command::picture)) picture_wanted_ = true;
-    if (window_.take(Command::reset) && has_pause()) load(exercise_);
+    if (window_.take(Command::reset) && has_pause()) {
+        load(exercise_);
+        return;
+    }
     static constexpr std::pair<Command, viewer::Scope::Preset> kPresets[] = {
         {Command::preset1, viewer::Scope::Preset::start},
         {Command::preset2, viewer::Scope::Preset::overview},
@@ -183,6 +211,7 @@ void Trainer::obey_commands() {
         {Command::preset4, viewer::Scope::Preset::from_side}};
     for (const auto& [command, preset] : kPresets)
         if (window_.take(command) && scope_) scope_->go(preset);
+    if (window_.take(Command::wipe)) lens_.wipe();
 }
 
 void Trainer::load(int exercise) {
@@ -229,7 +258,16 @@ void Trainer::finish_loading() {
     mapping_.emplace(session_->theatre());
     mapping_->sensitivity() = settings_.hands;
     scope_.emplace(session_->setup().camera);
+    lens_ = {};
     answered_ = 0;
+    loading_step_ = viewer::Loader::Step::picture;
+    loading_since_s_ = now_s_;
+    // The first picture makes the shaders, which may take a while: the loading screen stays until it is there.
+    pictures_.show(session_.get());
+    pictures_.update();  // one of the session before
+}
+
+void Trainer::begin_practice() {
     session_->start();
     screen_ = Screen::practice;
 }
@@ -246,12 +284,13 @@ void Trainer::practise(double dt_s) {
     controls.paused = screen_ == Screen::paused || help_;
     controls.sampled_s = now_s_;
     session_->set(controls);
-    session_->update();
+    if (!controls.paused) lens_.advance(pictures_.picture().figures, scope_->tip_m(), dt_s);
     if (attempt_ && attempt_->done()) end_session();
 }
 
 void Trainer::end_session() {
     if (!session_) return;
+    pictures_.show(nullptr);
     session_->stop();
     screen_ = Screen::start;
     if (attempt_) {
@@ -264,15 +303,37 @@ void Trainer::end_session() {
     session_.reset();
 }
 
+void Trainer::ask_for_picture() {
+    if (!scope_) return;
+    PictureWish wish;
+    wish.camera = scope_->camera();
+    wish.lens = lens_.look();
+    window_.size(wish.width, wish.height);
+    wish.tier = settings_.tier;
+    if (wish == wished_) return;
+    wished_ = wish;
+    pictures_.wish(wish);
+}
+
 void Trainer::draw_picture(int width, int height) {
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, width, height);
-    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-    if (!session_ || !scope_) return;
-    render::View& view = session_->snapshot().view;
-    view.camera = scope_->camera();
-    canvas_.draw(view, width, height, now_s_);
+    const Picture& picture = pictures_.picture();
+    if (!session_ || screen_ == Screen::loading || picture.texture == 0) return;
+    ImGui::GetBackgroundDrawList()->AddImage(
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), ImVec2(0.0f, 0.0f),
+        ImVec2(static_cast<float>(width), static_cast<float>(height)), ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
+}
+
+void Trainer::play_sound() {
+    viewer::SoundScene scene;
+    scene.volume = settings_.muted || screen_ != Screen::practice || help_ ? 0.0 : settings_.volume;
+    const viewer::Figures& figures = pictures_.picture().figures;
+    const bool active = screen_ == Screen::practice && figures.input.pedal;
+    scene.coagulating = active && figures.input.mode == tissue::GeneratorMode::coag;
+    scene.cutting = active && !scene.coagulating;
+    scene.sizzle = std::sqrt(std::max(0.0, figures.boiling_kg_per_s / kFullSizzle_kg_per_s));
+    scene.suction = figures.fluids.suction;
+    scene.irrigation = figures.fluids.irrigation;
+    sound_.set(scene);
 }
 
 void Trainer::draw_screens() {
@@ -291,7 +352,7 @@ void Trainer::draw_screens() {
             break;
         }
         case Screen::loading:
-            if (loader_->step() != loading_step_) {
+            if (loader_ && loader_->step() != loading_step_) {
                 loading_step_ = loader_->step();
                 loading_since_s_ = now_s_;
             }
@@ -312,7 +373,8 @@ void Trainer::draw_screens() {
             break;
     }
     if (settings_open_ && screen_ != Screen::practice &&
-        draw_settings(gui_, text_, languages_, text_("tier." + std::to_string(canvas_.tier())), settings_, changed))
+        draw_settings(gui_, text_, languages_, text_("tier." + std::to_string(pictures_.picture().tier)), settings_,
+                      changed))
         settings_open_ = false;
     if (changed) {
         settings_changed_ = true;
@@ -322,10 +384,10 @@ void Trainer::draw_screens() {
 
 PictureFigures Trainer::figures() const {
     PictureFigures figures;
-    figures.pictures_per_s = pictures_.per_s();
-    figures.draw_ms = 1e3 * canvas_.draw_s();
+    figures.pictures_per_s = picture_rate_.per_s();
+    figures.draw_ms = 1e3 * pictures_.picture().draw_s;
     figures.latency_ms = 1e3 * latency_s_;
-    figures.tier = text_("tier." + std::to_string(canvas_.tier()));
+    figures.tier = text_("tier." + std::to_string(pictures_.picture().tier));
     figures.scheduling = session_->scheduling();
     return figures;
 }
@@ -335,8 +397,9 @@ void Trainer::draw_practice() {
     if (attempt_) lines = attempt_->hud();
     const viewer::Controls& controls = mapping_->controls();
     draw_hud(gui_, text_,
-             {session_->snapshot(), figures(), settings_, options_.exercises[static_cast<std::size_t>(exercise_)].name,
-              lines, mapping_->left_active(), controls.suction, controls.irrigation});
+             {pictures_.picture().figures, figures(), settings_,
+              options_.exercises[static_cast<std::size_t>(exercise_)].name, lines, mapping_->left_active(),
+              controls.suction, controls.irrigation});
 }
 
 void Trainer::handle(PauseChoice choice) {

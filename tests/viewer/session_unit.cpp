@@ -26,7 +26,7 @@ std::uint64_t burn(int ticks) {
     Scope scope(core.run().setup().camera);
     for (int tick = 0; tick < ticks; ++tick) {
         Devices devices;
-        if (tick % 16 == 0) devices.wheel = tick < 160 ? 0.8 : 0.0;
+        if (tick % 16 == 0) devices.wheel = tick < 160 ? 2.0 : 0.0;
         devices.hold(Action::yellow_pedal, tick > 120);
         mapping.apply(devices, 1e-3, scope);
         EXPECT_TRUE(core.tick(mapping.controls()));

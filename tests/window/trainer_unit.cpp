@@ -1,0 +1,217 @@
+// The trainer as a person meets it: a window, a mouse, keys, pictures of what is seen. On a display out of sight.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include <stb/stb_image.h>
+
+#include "apps/program.h"
+#include "window/display.h"
+
+namespace calot::window::test {
+namespace {
+
+using calot::test::Folder;
+using calot::test::Program;
+
+constexpr int kWidth = 960, kHeight = 640;
+constexpr auto kPatience = std::chrono::seconds(150);  // for machines that do much else
+
+constexpr const char* kBlock = R"(
+[scene]
+name = "block"
+[anatomy]
+kind = "block"
+[block]
+size_mm = [24, 24, 7.2]
+[electric]
+window_cells = 24
+[camera]
+eye_offset_mm = [0, -25, 40]
+)";
+
+struct Colour {
+    double r = 0.0, g = 0.0, b = 0.0;
+    double luma() const { return 0.3 * r + 0.59 * g + 0.11 * b; }
+};
+
+/// A picture of the window.
+class Shot {
+  public:
+    explicit Shot(const std::string& path) {
+        int channels = 0;
+        pixels_ = stbi_load(path.c_str(), &width_, &height_, &channels, 3);
+    }
+    ~Shot() { stbi_image_free(pixels_); }
+    Shot(Shot&& other) noexcept
+        : pixels_(std::exchange(other.pixels_, nullptr)), width_(other.width_), height_(other.height_) {}
+    Shot& operator=(Shot&&) = delete;
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    Colour at(int x, int y) const {
+        const unsigned char* p = pixels_ + 3 * (y * width_ + x);
+        return {p[0] / 255.0, p[1] / 255.0, p[2] / 255.0};
+    }
+    Colour mean(int x0, int y0, int x1, int y1) const {
+        Colour sum;
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) sum.r += at(x, y).r, sum.g += at(x, y).g, sum.b += at(x, y).b;
+        const double n = (x1 - x0) * (y1 - y0);
+        return {sum.r / n, sum.g / n, sum.b / n};
+    }
+    /// Share of the pixels in a box that differ visibly from another picture's.
+    double changed(const Shot& other, int x0, int y0, int x1, int y1) const {
+        int count = 0;
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) count += std::fabs(at(x, y).luma() - other.at(x, y).luma()) > 0.08;
+        return static_cast<double>(count) / ((x1 - x0) * (y1 - y0));
+    }
+    double share_brighter(double luma, int x0, int y0, int x1, int y1) const {
+        int count = 0;
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) count += at(x, y).luma() > luma;
+        return static_cast<double>(count) / ((x1 - x0) * (y1 - y0));
+    }
+
+  private:
+    unsigned char* pixels_ = nullptr;
+    int width_ = 0, height_ = 0;
+};
+
+/// The program in a window, and the person in front of it.
+class Person {
+  public:
+    explicit Person(const Folder& folder, std::vector<std::string> more = {}) : folder_(folder) {
+        ::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+        std::vector<std::string> words{"view",       folder.write("block.toml", kBlock),
+                                       "--pictures", folder.path().string(),
+                                       "--width",    std::to_string(kWidth),
+                                       "--height",   std::to_string(kHeight)};
+        words.insert(words.end(), more.begin(), more.end());
+        program_ = std::make_unique<Program>(words);
+        // Without a window manager nobody gives the window the keys.
+        seen_ = wait([] {
+            return run_tool({"xdotool", "search", "--onlyvisible", "--name", "^Calot$", "windowfocus"});
+        });
+    }
+    bool window_opened() const { return seen_; }
+    void key(const std::string& name) const { run_tool({"xdotool", "key", name}); }
+    void click(int x, int y) const {
+        run_tool({"xdotool", "mousemove", std::to_string(x), std::to_string(y)});
+        pause(150);
+        run_tool({"xdotool", "mousedown", "1"});
+        pause(120);
+        run_tool({"xdotool", "mouseup", "1"});
+    }
+    static void pause(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
+    template <class Condition>
+    static bool wait(const Condition& condition) {
+        const auto until = std::chrono::steady_clock::now() + kPatience;
+        while (!condition()) {
+            if (std::chrono::steady_clock::now() > until) return false;
+            pause(60);
+        }
+        return true;
+    }
+    /// F12, as a person would.
+    Shot look() {
+        char name[32];
+        std::snprintf(name, sizeof(name), "calot-%03d.png", ++shots_);
+        key("F12");
+        const std::string path = folder_ / name;
+        EXPECT_TRUE(wait([&] { return std::filesystem::exists(path); })) << path;
+        return Shot(path);
+    }
+    calot::test::Outcome ended() { return program_->wait(); }
+
+  private:
+    const Folder& folder_;
+    std::unique_ptr<Program> program_;
+    bool seen_ = false;
+    int shots_ = 0;
+};
+
+/// Tissue fills the middle of the round image: warm, neither dark nor blown out.
+bool shows_tissue(const Shot& shot) {
+    const Colour middle = shot.mean(kWidth / 2 - 120, kHeight / 2 - 60, kWidth / 2 + 120, kHeight / 2 + 120);
+    return middle.luma() > 0.12 && middle.r > middle.b + 0.10;
+}
+
+class Trainer : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        if (!display_.works() || !run_tool({"xdotool", "version"})) GTEST_SKIP() << "there is no Xvfb or no xdotool";
+    }
+    Display display_{kWidth, kHeight};
+};
+
+TEST_F(Trainer, start_practice_burn_pause_and_quit) {
+    const Folder folder("trainer");
+    Person person(folder);
+    ASSERT_TRUE(person.window_opened());
+    const Shot start = person.look();
+    ASSERT_EQ(start.width(), kWidth);
+    ASSERT_EQ(start.height(), kHeight);
+    // A heading and buttons on the left, nothing yet on the right.
+    EXPECT_GT(start.share_brighter(0.6, 40, 20, 400, 300), 0.004);
+    EXPECT_LT(start.mean(kWidth - 200, 100, kWidth - 20, kHeight - 100).luma(), 0.05);
+
+    person.click(300, 180);  // free practice, the first of the list
+    ASSERT_TRUE(Person::wait([&] { return shows_tissue(person.look()); }));
+    Person::pause(600);
+    const Shot practice = person.look();
+    EXPECT_GT(practice.share_brighter(0.6, 16, kHeight - 250, 316, kHeight - 16), 0.004);  // the generator's figures
+    EXPECT_GT(practice.share_brighter(0.4, kWidth - 290, 16, kWidth - 16, 110), 0.004);    // the exercise's
+
+    // The hook follows the mouse.
+    run_tool({"xdotool", "mousemove_relative", "--", "-110", "70"});
+    Person::pause(900);
+    const Shot moved = person.look();
+    EXPECT_GT(moved.changed(practice, 330, 100, kWidth - 100, kHeight - 60), 0.004);
+
+    // The yellow pedal lights the yellow half of the generator.
+    run_tool({"xdotool", "mousedown", "1"});
+    Person::pause(900);
+    const Shot cutting = person.look();
+    run_tool({"xdotool", "mouseup", "1"});
+    const Colour dark = practice.mean(40, kHeight - 225, 150, kHeight - 195);
+    const Colour lit = cutting.mean(40, kHeight - 225, 150, kHeight - 195);
+    EXPECT_GT(lit.r, dark.r + 0.3);
+    EXPECT_GT(lit.g, dark.g + 0.2);
+    EXPECT_LT(lit.b, 0.45);
+
+    person.key("Escape");
+    Person::pause(600);
+    const Shot paused = person.look();
+    EXPECT_LT(paused.mean(kWidth / 2 - 200, kHeight / 2 - 150, kWidth / 2 + 200, kHeight / 2 + 150).luma(), 0.25);
+    EXPECT_GT(paused.changed(practice, kWidth / 2 - 200, kHeight / 2 - 150, kWidth / 2 + 200, kHeight / 2 + 150), 0.5);
+    person.click(kWidth / 2, kHeight / 2 + 180);  // the last button: quit
+    const auto outcome = person.ended();
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    EXPECT_EQ(outcome.output, "");
+}
+
+TEST_F(Trainer, help_covers_and_goes_away_in_another_language) {
+    const Folder folder("trainer_help");
+    Person person(folder, {"--start", "free", "--language", "de"});
+    ASSERT_TRUE(person.window_opened());
+    ASSERT_TRUE(Person::wait([&] { return shows_tissue(person.look()); }));
+    person.key("F1");
+    Person::pause(700);
+    const Shot help = person.look();
+    EXPECT_FALSE(shows_tissue(help));
+    EXPECT_GT(help.share_brighter(0.55, 40, 40, kWidth - 40, kHeight - 40), 0.005);  // much text
+    person.key("F1");
+    EXPECT_TRUE(Person::wait([&] { return shows_tissue(person.look()); }));
+}
+
+}  // namespace
+}  // namespace calot::window::test
+
+#define STB_IMAGE_IMPLEMENTATION
+#include <stb/stb_image.h>
