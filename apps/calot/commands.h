@@ -90,4 +90,21 @@ struct BenchOptions {
 };
 int bench(const BenchOptions& options);
 
+struct HapticsOptions {
+    bool list = false;
+    std::string device = "auto";
+    double seconds = 4.0;
+    std::string scene;  ///< empty: a block of fat
+    double gain = 1.0;
+    double scale = 1.0;
+    bool cut = false;            ///< the simulated hand presses the pedal as well
+    bool virtual_clock = false;  ///< as fast as it goes
+    std::string json, report;    ///< files to write, empty: none
+    bool force = false;
+    std::string network_address = "127.0.0.1";
+    int network_port = 5460;
+    std::string openhaptics_library;
+};
+int try_haptics(const HapticsOptions& options);
+
 }  // namespace calot::app
