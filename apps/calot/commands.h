@@ -74,7 +74,9 @@ struct ViewOptions {
     std::string pictures = ".";
     int width = 1280, height = 800;
     bool fullscreen = false;
-    int threads = 0;  ///< for the physics; 0: as fits the machine
+    int threads = 0;            ///< for the physics; 0: as fits the machine
+    std::string haptics;        ///< haptic device for the right hand; empty: none
+    double haptics_gain = 1.0;  ///< of its force
 };
 int view(const ViewOptions& options);
 

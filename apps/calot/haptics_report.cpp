@@ -50,10 +50,10 @@ std::string character_plot(const std::vector<DepthPoint>& points, const TrialFig
 std::string passivity_text(const HapticTrial& trial) {
     const haptics::ServoState& s = trial.status.servo;
     return fmt::format(
-        "{}: the hand put in {:.2f} mJ net, at no time got more than {:.4f} mJ beyond that (of {:.2f} "
-        "allowed); {:.3f} mJ withheld in {} steps",
-        trial.passive() ? "passive" : "NOT PASSIVE", s.absorbed_J * 1e3, std::max(0.0, -s.least_absorbed_J * 1e3),
-        trial.options.servo.passivity.start_J * 1e3, s.withheld_J * 1e3, s.limited);
+        "{} (least balance of the hand's energy {:+.4f} mJ, {:+.2f} allowed; {:.3f} mJ withheld in {} "
+        "steps)",
+        trial.passive() ? "passive: energy was never generated" : "NOT PASSIVE", s.least_absorbed_J * 1e3,
+        -trial.options.servo.passivity.start_J * 1e3, s.withheld_J * 1e3, s.limited);
 }
 
 std::string joined(const std::vector<std::string>& parts) {

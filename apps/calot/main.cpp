@@ -107,6 +107,13 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
     command.add_option("--threads", options.threads, "Threads for the physics; 0: as fits the machine")
         ->type_name("N")
         ->check(CLI::Range(0, 1024));
+    command
+        .add_option("--haptics", options.haptics,
+                    "Haptic device for the right hand: auto, openhaptics, simulated or network (docs/haptics.md)")
+        ->type_name("DEVICE ")
+        ->check(CLI::IsMember({"auto", "openhaptics", "simulated", "network"}));
+    command.add_option("--haptics-gain", options.haptics_gain, "Force on the hand over the true one")
+        ->check(CLI::Range(0.0, 100.0));
     command.footer("\nWithout SCENE it opens the standard patient. F1 in the window shows the controls.");
 }
 

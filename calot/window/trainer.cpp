@@ -230,6 +230,7 @@ void Trainer::finish_loading() {
     mapping_->sensitivity() = settings_.hands;
     scope_.emplace(session_->setup().camera);
     answered_ = 0;
+    if (options_.make_device) session_->hold(options_.make_device(session_->setup()));
     session_->start();
     screen_ = Screen::practice;
 }
