@@ -296,7 +296,7 @@ std::string trial_html(const HapticTrial& trial) {
     out +=
         "</div>\n<h2>Force against depth</h2>\n<div class=\"wide\">" + trial_svg(trial) +
         "</div>\n<p>Pressing the hook into tissue and releasing it, as in Fig. 16 of Pan et al. 2019, in true newtons "
-        "on the hook. That the way back runs below the way there is the tissue's damping.</p>\n<h2>Against "
+        "on the hook. That the way back runs below the way there is damping and friction.</p>\n<h2>Against "
         "time</h2>\n" +
         time_plots(trial) + details(trial, figures);
     return out + fmt::format(

@@ -2,9 +2,11 @@
 // `calot view`: the trainer. Screens, the running session, and the loop that draws both.
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "calot/haptics/session.h"
 #include "calot/scene/scene.h"
 #include "calot/viewer/exercise.h"
 
