@@ -77,8 +77,10 @@ struct ViewOptions {
     std::string pictures = ".";
     int width = 1280, height = 800;
     bool fullscreen = false;
-    int threads = 0;  ///< for the physics; 0: as fits the machine
+    int threads = 0;             ///< for the physics; 0: as fits the machine
     std::string data, trainee;  ///< of the sessions, see SessionOptions
+    std::string haptics;        ///< haptic device for the right hand; empty: none
+    double haptics_gain = 1.0;  ///< of its force
 };
 int view(const ViewOptions& options);
 
@@ -146,5 +148,22 @@ struct TasksOptions {
     bool metrics = false;
 };
 int tasks(const TasksOptions& options);
+
+struct HapticsOptions {
+    bool list = false;
+    std::string device = "auto";
+    double seconds = 4.0;
+    std::string scene;  ///< empty: a block of fat
+    double gain = 1.0;
+    double scale = 1.0;
+    bool cut = false;            ///< the simulated hand presses the pedal as well
+    bool virtual_clock = false;  ///< as fast as it goes
+    std::string json, report;    ///< files to write, empty: none
+    bool force = false;
+    std::string network_address = "127.0.0.1";
+    int network_port = 5460;
+    std::string openhaptics_library;
+};
+int try_haptics(const HapticsOptions& options);
 
 }  // namespace calot::app

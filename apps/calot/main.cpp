@@ -24,6 +24,7 @@ Examples:
   calot view                                            operate on the standard patient, in a window
   calot replay out/calot/recording.calot --verify       run it again and compare bit for bit
   calot bench --suite kernels                           how fast each part is on this machine
+  calot haptics --list                                  haptic devices that there are
   calot scene --defaults                                every key that a scene may have
 
 Exit codes: 0 done, 2 bad input or usage, 130 interrupted, 1 anything else.)";
@@ -109,6 +110,13 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
         ->check(CLI::Range(0, 1024));
     command.add_option("--trainee", options.trainee, "Label of who trains; any text, no name needed")->type_name("LABEL");
     command.add_option("--data", options.data, "Where sessions are kept; otherwise $XDG_DATA_HOME/calot")->type_name("DIR");
+    command
+        .add_option("--haptics", options.haptics,
+                    "Haptic device for the right hand: auto, openhaptics, simulated or network (docs/haptics.md)")
+        ->type_name("DEVICE ")
+        ->check(CLI::IsMember({"auto", "openhaptics", "simulated", "network"}));
+    command.add_option("--haptics-gain", options.haptics_gain, "Force on the hand over the true one")
+        ->check(CLI::Range(0.0, 100.0));
     command.footer("\nWithout SCENE it opens the standard patient. F1 in the window shows the controls.");
 }
 
@@ -136,6 +144,31 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
     command.footer(
         "\nWithout --json and --html it writes out/bench/bench.json and out/bench/bench.html.\n"
         "What the figures mean: docs/performance.md.");
+}
+
+void add_haptics_options(CLI::App& command, HapticsOptions& options) {
+    command.add_flag("--list", options.list, "Say which devices there are, and stop");
+    command.add_option("--device", options.device, "auto, openhaptics, simulated or network")
+        ->type_name("KIND ")
+        ->check(CLI::IsMember({"auto", "openhaptics", "simulated", "network"}));
+    command.add_option("--seconds", options.seconds, "How long the hand feels")
+        ->type_name("SECONDS")
+        ->check(seconds_between(0.1, 3600.0));
+    command.add_option("--scene", options.scene, "What it feels, instead of a block of fat")->type_name("SCENE");
+    command.add_option("--gain", options.gain, "Force on the hand over the true one")->check(CLI::Range(0.0, 100.0));
+    command.add_option("--scale", options.scale, "Movement of the instrument over the hand's")
+        ->check(CLI::Range(0.05, 20.0));
+    command.add_flag("--cut", options.cut, "The simulated hand presses the pedal while it holds");
+    command.add_flag("--virtual", options.virtual_clock,
+                     "The simulated hand on a virtual clock: the same figures every time, nothing said of timing");
+    command.add_option("--json", options.json, "Write the figures as JSON")->type_name("FILE");
+    command.add_option("--report", options.report, "Write a page, a plot and every millisecond")->type_name("DIR");
+    command.add_flag("--force", options.force, "Replace the report's directory if it exists");
+    command.add_option("--network-address", options.network_address, "Where the network device listens")
+        ->type_name("IPV4");
+    command.add_option("--network-port", options.network_port, "and on which UDP port")->check(CLI::Range(1, 65535));
+    command.add_option("--openhaptics-library", options.openhaptics_library, "libHD.so, if it is not found by itself")
+        ->type_name("FILE");
 }
 
 int run(int argc, char** argv) {
@@ -203,6 +236,18 @@ int run(int argc, char** argv) {
 
     TrainingCommands training;
     training.add_to(app, code);
+
+    HapticsOptions haptics_options;
+    CLI::App* haptics_command =
+        app.add_subcommand("haptics", "Try a haptic device: rate, jitter, latency, passivity, force against depth");
+    add_haptics_options(*haptics_command, haptics_options);
+    haptics_command->footer(
+        "\nExamples:\n"
+        "  calot haptics --list\n"
+        "  calot haptics --report out/touch                  press into fat with the device that there is\n"
+        "  calot haptics --device simulated --report out/hand  the same without any hardware\n"
+        "\nExit code 1 when the device got energy that it should not have (docs/haptics.md).");
+    haptics_command->callback([&] { code = try_haptics(haptics_options); });
 
     bool defaults = false;
     CLI::App* scene_command = app.add_subcommand("scene", "About scene files");

@@ -1,12 +1,15 @@
 // `calot view`: the trainer's window.
 
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "calot/base/parallel.h"
+#include "calot/haptics/choose.h"
+#include "calot/haptics/session.h"
 #include "calot/viewer/data_files.h"
 #include "calot/window/trainer.h"
 #include "commands.h"
@@ -30,6 +33,20 @@ int physics_threads(int wanted) {
 void leave_a_core() {
     const unsigned cores = std::thread::hardware_concurrency();
     if (cores > 1) ::setenv("LP_NUM_THREADS", std::to_string(std::min(16u, cores - 1)).c_str(), 0);
+}
+
+/// A device for the right hand, whose directions are those of the picture as it is at first.
+std::shared_ptr<haptics::Session> make_device(const ViewOptions& options, const simulation::Setup& setup) {
+    haptics::SessionOptions session;
+    session.hook = setup.hook;
+    session.tick_s = setup.model.tick_s;
+    session.mapping.trocar_m = setup.script.trocar_m();
+    session.mapping.device_to_world =
+        haptics::device_to_world(setup.camera.eye_m, setup.camera.target_m, Vec3(0.0, 1.0, 0.0));
+    session.servo.gain = options.haptics_gain;
+    haptics::DeviceChoice choice;
+    choice.kind = options.haptics;
+    return std::make_shared<haptics::Session>(haptics::make_device(choice), session);
 }
 
 }  // namespace
@@ -56,6 +73,10 @@ int view(const ViewOptions& options) {
     std::string trouble;
     trainer.exercises = training_exercises(options.data, options.trainee, trouble);
     if (!trouble.empty()) fmt::print(stderr, "calot: note: sessions will not be stored: {}\n", trouble);
+    if (!options.haptics.empty()) {
+        haptics::make_device(haptics::DeviceChoice{.kind = options.haptics});  // told before a window opens
+        trainer.make_device = [&options](const simulation::Setup& setup) { return make_device(options, setup); };
+    }
     trainer.start = options.start;
     trainer.language = options.language;
     trainer.pictures = options.pictures;

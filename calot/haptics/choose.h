@@ -12,10 +12,10 @@
 namespace calot::haptics {
 
 struct DeviceChoice {
-    std::string kind = "auto";        ///< "auto", "openhaptics", "simulated", "network"
-    std::string openhaptics_device;   ///< name in its configuration; empty: the default device
-    std::string openhaptics_library;  ///< path of libHD.so; empty: where it is customarily found
-    NetworkOptions network;
+    std::string kind = "auto";          ///< "auto", "openhaptics", "simulated", "network"
+    std::string openhaptics_device{};   ///< name in its configuration; empty: the default device
+    std::string openhaptics_library{};  ///< path of libHD.so; empty: where it is customarily found
+    NetworkOptions network{};
     std::vector<HandKey> script = press_and_release(0.01, 4.0);  ///< of the simulated hand
 };
 

@@ -51,6 +51,7 @@ void Servo::step(double now_s) noexcept {
     state_.limited = passivity_.limited();
     ++state_.steps;
     states_.put(state_);
+    traces_.put(state_);
 }
 
 /// Reads and checks the device; books the work of the last force.

@@ -60,6 +60,7 @@ class Servo {
     // The simulation's thread.
     bool take_hand(HandMessage& hand) { return hands_.take(hand); }
     void put_tool(const ToolMessage& tool) { tools_.put(tool); }
+    bool take_trace(ServoState& state) { return traces_.take(state); }
 
     // One other thread.
     bool take_state(ServoState& state) { return states_.take(state); }
@@ -79,7 +80,7 @@ class Servo {
     PassivityControl passivity_;
     Mailbox<HandMessage> hands_;
     Mailbox<ToolMessage> tools_;
-    Mailbox<ServoState> states_;
+    Mailbox<ServoState> states_, traces_;
     Spread period_, latency_;
 
     ToolMessage tool_;

@@ -73,6 +73,9 @@ class Session {
     /// Instead of both while the simulation pauses: the force fades out, and nothing is late.
     void rest();
 
+    /// What the servo loop last did.
+    void servo_state(ServoState& state) { servo_.take_trace(state); }
+
     /// From one thread, not the simulation's.
     SessionStatus status();
     const Spread& period() const { return servo_.period(); }

@@ -53,13 +53,20 @@ Session::~Session() {
     stop();
 }
 
+void Session::hold(std::shared_ptr<haptics::Session> device) {
+    device_ = std::move(device);
+    core_.hold(device_);
+}
+
 void Session::start() {
+    if (device_) device_->start();
     if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
 }
 
 void Session::stop() {
     stopping_ = true;
     if (thread_.joinable()) thread_.join();
+    if (device_) device_->stop();
     core_.end();
 }
 
@@ -111,6 +118,7 @@ void Session::work() {
         double now_s = steady_s();
         if (controls.paused || !core_.run().state().status.ok) {
             paused = true;
+            core_.rest();
             if (now_s >= picture_due_s) {
                 publish(now_s, controls);
                 picture_due_s = now_s + 0.1;

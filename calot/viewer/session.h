@@ -30,6 +30,8 @@ class Session {
     explicit Session(std::unique_ptr<simulation::Simulation> run, SessionOptions options = {});
     ~Session();
 
+    /// Before start(): a haptic device for the right hand. The session starts and stops it.
+    void hold(std::shared_ptr<haptics::Session> device);
     void start();
     /// Ends the thread after its tick and tells the observers. Nothing runs afterwards.
     void stop();
@@ -53,6 +55,7 @@ class Session {
 
     SessionOptions options_;
     SessionCore core_;
+    std::shared_ptr<haptics::Session> device_;
     TripleBuffer<Controls> controls_;
     TripleBuffer<Snapshot> snapshots_;
     TickClock clock_;

@@ -69,10 +69,23 @@ tissue::Input SessionCore::input_for(const Controls& controls) {
     return input;
 }
 
+/// The device's hand in place of the controls' right one, which goes on from there once the device is let go.
+void SessionCore::follow_device(const Controls& controls) {
+    if (!device_ || !device_->drive(input_)) return;
+    const Vec3& port_m = theatre_.right.port_m;
+    right_ = HeldInstrument(
+        {input_.hook.position_m, haptics::roll_of(port_m, input_.hook, run_->setup().hook), controls.right.closed});
+    if (!input_.pedal || controls.yellow || controls.blue) return;
+    input_.mode = controls.blended_cut ? tissue::GeneratorMode::blend : tissue::GeneratorMode::cut;
+    input_.power_setting_W = controls.cut_W;  // the stylus' button is a yellow pedal
+}
+
 bool SessionCore::tick(const Controls& controls) {
     input_ = input_for(controls);
     run_->set_fluids({controls.suction, controls.irrigation});
+    follow_device(controls);
     const bool ok = run_->tick(input_);
+    if (device_) device_->feel(run_->state());
     double gas_kg = 0.0;
     for (const tissue::GasEvent& event : run_->work().exchange.gas)
         gas_kg += static_cast<double>(event.steam_kg) + static_cast<double>(event.smoke_kg);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "calot/haptics/session.h"
 #include "calot/simulation/simulation.h"
 #include "calot/viewer/controls.h"
 #include "calot/viewer/hand.h"
@@ -29,6 +30,13 @@ class SessionCore {
     SessionCore(const SessionCore&) = delete;
     SessionCore& operator=(const SessionCore&) = delete;
 
+    /// From now on a haptic device has the hook whenever a hand is on it; the controls have it otherwise.
+    void hold(std::shared_ptr<haptics::Session> device) { device_ = std::move(device); }
+    /// Instead of ticks while the session pauses.
+    void rest() {
+        if (device_) device_->rest();
+    }
+
     /// One tick of hands and physics. False once the simulation's status is not ok.
     bool tick(const Controls& controls);
     void fill(Snapshot& snapshot);
@@ -40,11 +48,13 @@ class SessionCore {
 
   private:
     tissue::Input input_for(const Controls& controls);
+    void follow_device(const Controls& controls);
 
     std::unique_ptr<simulation::Simulation> run_;
     std::vector<std::shared_ptr<Observer>> observers_;
     Theatre theatre_;
     HeldInstrument right_, left_;
+    std::shared_ptr<haptics::Session> device_;
     Picture picture_;
     tissue::Input input_;
     double boiling_kg_per_s_ = 0.0;

@@ -260,6 +260,7 @@ void Trainer::finish_loading() {
     scope_.emplace(session_->setup().camera);
     lens_ = {};
     answered_ = 0;
+    if (options_.make_device) session_->hold(options_.make_device(session_->setup()));
     loading_step_ = viewer::Loader::Step::picture;
     loading_since_s_ = now_s_;
     // The first picture makes the shaders, which may take a while: the loading screen stays until it is there.

@@ -2,9 +2,11 @@
 // `calot view`: the trainer. Screens, the running session, and the loop that draws both.
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "calot/haptics/session.h"
 #include "calot/scene/scene.h"
 #include "calot/viewer/exercise.h"
 
@@ -22,6 +24,8 @@ struct TrainerOptions {
     /// Called in a thread; throws InputError.
     std::function<scene::Scene(const SceneWish&)> make_scene;
     std::vector<viewer::Exercise> exercises;
+    /// A haptic device for a session's right hand; empty: none. Throws InputError.
+    std::function<std::shared_ptr<haptics::Session>(const simulation::Setup&)> make_device;
     std::string start;           ///< id of an exercise to start at once; empty: the start screen
     std::string language;        ///< instead of the settings' one; empty: theirs
     std::string pictures = ".";  ///< directory that F12 puts pictures into
