@@ -166,4 +166,15 @@ struct HapticsOptions {
 };
 int try_haptics(const HapticsOptions& options);
 
+struct ValidateOptions {
+    std::string suite;                ///< empty: all
+    std::string json, report;         ///< file and directory to write, empty: none
+    std::string scenes;               ///< of the experiments, empty: looked for
+    std::vector<std::string> spoil;   ///< NAME=FACTOR
+    bool quick = false, force = false;
+    ProgressKind progress = ProgressKind::automatic;
+    int threads = 0;  ///< 0: all cores
+};
+int validate(const ValidateOptions& options);
+
 }  // namespace calot::app

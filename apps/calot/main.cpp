@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "calot/base/error.h"
+#include "calot/validation/case.h"
 #include "commands.h"
 #include "training_commands.h"
 
@@ -25,6 +26,7 @@ Examples:
   calot replay out/calot/recording.calot --verify       run it again and compare bit for bit
   calot bench --suite kernels                           how fast each part is on this machine
   calot haptics --list                                  haptic devices that there are
+  calot validate --report out/validation                compare with closed forms and experiments
   calot scene --defaults                                every key that a scene may have
 
 Exit codes: 0 done, 2 bad input or usage, 130 interrupted, 1 anything else.)";
@@ -171,6 +173,29 @@ void add_haptics_options(CLI::App& command, HapticsOptions& options) {
         ->type_name("FILE");
 }
 
+void add_validate_options(CLI::App& command, ValidateOptions& options) {
+    command.add_option("--suite", options.suite, "Only this part")
+        ->type_name("NAME ")
+        ->check(CLI::IsMember(validation::suites()));
+    command.add_flag("--quick", options.quick, "The short form: coarser, without the experiments");
+    command.add_option("--json", options.json, "Write all cases there")->type_name("FILE");
+    command.add_option("--report", options.report, "Write a page with plots (report.html) there")->type_name("DIR");
+    command.add_flag("--force", options.force, "Replace an earlier report");
+    command.add_option("--scenes", options.scenes, "Folder of the experiments' scenes")->type_name("DIR");
+    command
+        .add_option("--spoil", options.spoil,
+                    "Multiply a parameter of the simulation, not of what it is compared with: cases must then fail")
+        ->type_name("NAME=FACTOR")
+        ->allow_extra_args(false);
+    add_word<ProgressKind>(command, "--progress", options.progress, {"auto", "plain", "none"},
+                           {ProgressKind::automatic, ProgressKind::plain, ProgressKind::none},
+                           "auto (on a terminal), plain (lines) or none");
+    command.add_option("--threads", options.threads, "Threads to compute with; 0: all cores")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1024));
+    command.footer("\nExit code 1 when a check fails; values outside published bands fail nothing.\n");
+}
+
 int run(int argc, char** argv) {
     CLI::App app("Calot simulates electrosurgery on soft tissue in real time.", "calot");
     app.footer(kExamples);
@@ -233,6 +258,11 @@ int run(int argc, char** argv) {
     CLI::App* bench_command = app.add_subcommand("bench", "Measure speed, and compare it with an earlier run");
     add_bench_options(*bench_command, bench_options);
     bench_command->callback([&] { code = bench(bench_options); });
+    ValidateOptions validate_options;
+    CLI::App* validate_command =
+        app.add_subcommand("validate", "Compare with closed forms, references, trends and published measurements");
+    add_validate_options(*validate_command, validate_options);
+    validate_command->callback([&] { code = validate(validate_options); });
 
     TrainingCommands training;
     training.add_to(app, code);

@@ -20,7 +20,8 @@ namespace {
 bool is_earlier_output(const fs::path& directory) {
     std::error_code error;
     return fs::is_empty(directory, error) || fs::exists(directory / "summary.json", error) ||
-           fs::exists(directory / "recording.calot", error);
+           fs::exists(directory / "recording.calot", error) ||
+           fs::exists(directory / "validation.json", error);
 }
 
 }  // namespace

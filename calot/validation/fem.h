@@ -1,6 +1,7 @@
 #pragma once
 // Small-strain finite elements to compare with: a box of equal hexahedra, trilinear, with the B-bar (mean dilatation)
-// method against volumetric locking (Hughes 1980), held on its z = 0 face, loaded by a uniform body force.
+// method against volumetric locking (Hughes 1980), held on its z = 0 face, loaded by a uniform body force or pressed by
+// a rigid paraboloid from above. With `quarter`, the planes x = 0 and y = 0 are planes of symmetry.
 
 #include <algorithm>
 #include <array>
@@ -18,8 +19,8 @@ class ClampedBox {
   public:
     /// A box of `size_m` in `elements` hexahedra, one corner at the origin. body_force_N_per_m3 = density * gravity.
     ClampedBox(const Vec3& size_m, const Int3& elements, double youngs_Pa, double poisson,
-               const Vec3& body_force_N_per_m3)
-        : size_(size_m), elements_(elements) {
+               const Vec3& body_force_N_per_m3, bool quarter = false)
+        : size_(size_m), elements_(elements), quarter_(quarter) {
         const double mu = youngs_Pa / (2.0 * (1.0 + poisson));
         const double lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
         const Vec3 edge = size_ / Vec3(elements_);
@@ -31,22 +32,53 @@ class ClampedBox {
             for (int y = 0; y < elements_.y; ++y)
                 for (int x = 0; x < elements_.x; ++x)
                     for (int a = 0; a < 8; ++a) {
-                        const int row = unknown(Int3(x, y, z) + corner(a));
+                        const Int3 row_node = Int3(x, y, z) + corner(a);
+                        const int row = unknown(row_node);
                         if (row < 0) continue;
                         for (int r = 0; r < 3; ++r)
-                            load[row + r] += body_force_N_per_m3[r] * edge.x * edge.y * edge.z / 8.0;
+                            if (!fixed(row_node, r)) load[row + r] += body_force_N_per_m3[r] * edge.x * edge.y * edge.z / 8.0;
                         for (int b = 0; b < 8; ++b) {
-                            const int column = unknown(Int3(x, y, z) + corner(b));
+                            const Int3 column_node = Int3(x, y, z) + corner(b);
+                            const int column = unknown(column_node);
                             if (column < 0 || column > row) continue;  // lower triangle, in blocks
                             for (int r = 0; r < 3; ++r)
                                 for (int c = 0; c < 3; ++c)
-                                    entries.emplace_back(row + r, column + c, stiffness(3 * a + r, 3 * b + c));
+                                    if ((!fixed(row_node, r) && !fixed(column_node, c)) || row + r == column + c)
+                                        entries.emplace_back(row + r, column + c, stiffness(3 * a + r, 3 * b + c));
                         }
                     }
         Eigen::SparseMatrix<double> matrix(3 * free_nodes, 3 * free_nodes);
         matrix.setFromTriplets(entries.begin(), entries.end());
-        Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(matrix);
-        solution_ = solver.solve(load);
+        solver_.compute(matrix);
+        solution_ = solver_.solve(load);
+    }
+
+    /// Force [N] on the quarter from a rigid paraboloid z = x^2 + y^2 / (2 radius), its apex `depth_m` below the top:
+    /// without friction, 0 <= force and 0 <= gap at every node of the top within `reach_m`, one of them zero.
+    double press(double radius_m, double depth_m, double reach_m) const {
+        std::vector<int> rows;
+        std::vector<double> gap;
+        for (int y = 0; y <= elements_.y; ++y)
+            for (int x = 0; x <= elements_.x; ++x) {
+                const Vec3 at = size_ / Vec3(elements_) * Vec3(x, y, 0);
+                if (glm::length(at) > reach_m) continue;
+                rows.push_back(unknown(Int3(x, y, elements_.z)) + 2);
+                gap.push_back(glm::dot(at, at) / (2.0 * radius_m) - depth_m);
+            }
+        const auto n = static_cast<Eigen::Index>(rows.size());
+        Eigen::MatrixXd compliance(n, n);
+        for (Eigen::Index k = 0; k < n; ++k) {
+            const Eigen::VectorXd u =
+                solver_.solve(Eigen::VectorXd::Unit(solution_.size(), rows[static_cast<std::size_t>(k)]));
+            for (Eigen::Index j = 0; j < n; ++j) compliance(j, k) = u[rows[static_cast<std::size_t>(j)]];
+        }
+        Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
+        for (int sweep = 0; sweep < 4000; ++sweep)  // projected Gauss-Seidel
+            for (Eigen::Index k = 0; k < n; ++k) {
+                const double open = gap[static_cast<std::size_t>(k)] + compliance.row(k).dot(force);
+                force[k] = std::max(0.0, force[k] - open / compliance(k, k));
+            }
+        return force.sum();
     }
 
     Vec3 displacement_m(const Vec3& position_m) const {
@@ -71,6 +103,8 @@ class ClampedBox {
         if (node.z == 0) return -1;
         return 3 * (node.x + (elements_.x + 1) * (node.y + (elements_.y + 1) * (node.z - 1)));
     }
+    /// Whether symmetry holds a component of a node.
+    bool fixed(const Int3& node, int axis) const { return quarter_ && axis < 2 && node[axis] == 0; }
     static std::array<Vec3, 8> gradients_at(const Vec3& edge, const Vec3& t) {
         std::array<Vec3, 8> gradients;
         for (int a = 0; a < 8; ++a) {
@@ -108,6 +142,8 @@ class ClampedBox {
 
     Vec3 size_;
     Int3 elements_;
+    bool quarter_;
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver_;
     Eigen::VectorXd solution_;
 };
 
