@@ -39,7 +39,7 @@ struct Work {
     std::array<float, kStages> stage_us{};  ///< wall time of the last tick's stages
 
     Work(const tissue::Model& model, const tissue::State& state, const instruments::HookShape& hook,
-         const instruments::GrasperShape& grasper, const effects::SmokeParameters& smoke);
+         const effects::SmokeParameters& smoke, const instruments::GrasperShape& grasper = {});
 };
 
 /// Advances the state by Model::tick_s. Does not throw, allocate, log or lock.
