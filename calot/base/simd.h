@@ -60,6 +60,13 @@ HWY_INLINE std::uint32_t bits_at(D d, const std::uint8_t* bytes, std::int64_t in
     return (word >> (index & 7)) & ((1u << hn::Lanes(d)) - 1u);
 }
 
+/// The lanes of `d` from sixteen bits, from bit `lane` on.
+template <class D>
+HWY_INLINE hn::Mask<D> mask_of(D d, std::uint16_t bits, int lane) {
+    const std::uint64_t word = static_cast<std::uint64_t>(bits) >> lane;  // LoadMaskBits may read eight bytes
+    return hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&word));
+}
+
 }  // namespace simd
 }  // namespace HWY_NAMESPACE
 }  // namespace calot

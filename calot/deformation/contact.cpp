@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calot/deformation/embedding.h"
+#include "calot/deformation/contact_kernel.h"
+#include "calot/deformation/contact_spread.h"
 #include "calot/deformation/ghosts.h"
-#include "calot/deformation/links.h"
-#include "calot/deformation/work.h"
+#include "calot/deformation/grasp.h"
 
 namespace calot::deformation {
 
@@ -15,158 +15,193 @@ using tissue::State;
 
 namespace {
 
-/// Gauss-Seidel sweeps in the first substep of a tick, which starts from nothing, and in the others, which start from
-/// the impulses of the last. A wire at rest 5 mm deep then holds its force to 0.1 % over half a second; 8 and 8 let it
-/// creep by 1.6 %, 2 and 2 by 7 %. Nothing is kept over ticks, so that a saved state resumes bit for bit.
-constexpr int kFirstSweeps = 24;
+/// Gauss-Seidel sweeps in the first substep of a tick, which has new points, and in the others. Both start from the
+/// impulses of the substep before.
+constexpr int kFirstSweeps = 6;
 constexpr int kSweeps = 4;
 /// Most phyxels that carry a point: the 5^3 about its own.
 constexpr std::size_t kMostCarriers = 125;
 /// Spacing of hexels to which ContactParameters::stiffness_N_per_m belongs; it grows with the area that a hexel has.
 constexpr double kStandardHexel_m = 0.6e-3;
+/// Impulses of a tick before are taken over where normals agree within 60 degrees.
+constexpr float kSameNormal = 0.5f;
 
-Mat3f moment_inverse(const Work& work, std::size_t i) {
-    std::array<float, 6> a;
-    for (std::size_t k = 0; k < a.size(); ++k) a[k] = work.moment_inverse[k][i];
-    return Mat3f(a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5]);
+std::int32_t padded(std::int32_t rows) {
+    return (rows + kContactLanes - 1) / kContactLanes * kContactLanes;
 }
 
-void add_spread(ContactWork& contact, std::int64_t cell, float value) {
-    float& sum = contact.spread[static_cast<std::size_t>(cell)];
-    if (sum == 0.0f) contact.touched.push_back(static_cast<std::int32_t>(cell));
-    sum += value;
-}
+// ---- Which points
 
-/// Adds psi of a material point to ContactWork::spread.
-void spread_point(const Model& model, const State& state, Work& work, std::int64_t hexel, const Vec3f& rest_m) {
-    ContactWork& contact = work.contact;
-    const auto spacing = static_cast<float>(model.phyxels.spacing_m);
-    const Stencil stencil = embedding_stencil(model, state, work, hexel, rest_m);
-    for (int n = 0; n < stencil.count; ++n) {
-        const std::int64_t carrier = stencil.phyxel[static_cast<std::size_t>(n)];
-        const float weight = stencil.weight[static_cast<std::size_t>(n)];
-        // G_j (X - X_j) = sum_l w u_jl (X_jl . A_j^-1 (X - X_j))
-        const Vec3f away = Vec3f(Vec3(rest_m) - model.phyxels.centre_m(carrier));
-        const Vec3f lever = (weight * spacing) * (moment_inverse(work, static_cast<std::size_t>(carrier)) * away);
-        float own = weight;
-        for_each_link(model.phyxels, state.links, carrier, [&](std::int64_t other, const Int3& step, double w) {
-            const float share = static_cast<float>(w) * glm::dot(lever, Vec3f(step));
-            own -= share;
-            add_spread(contact, other, share);
-        });
-        add_spread(contact, carrier, own);
-    }
-}
-
-/// What a ghost carries, the phyxels that it mirrors carry.
-void resolve_ghosts(const Model& model, Work& work) {
-    ContactWork& contact = work.contact;
-    for (std::size_t k = 0; k < contact.touched.size(); ++k) {
-        const std::int32_t cell = contact.touched[k];
-        if (!model.phyxel_ghost.test(cell)) continue;
-        const Mirror& mirror = find_mirror(work, cell);
-        const float share = contact.spread[static_cast<std::size_t>(cell)];
-        contact.spread[static_cast<std::size_t>(cell)] = 0.0f;
-        for (int n = 0; n < mirror.count; ++n)
-            add_spread(contact, mirror.phyxel[static_cast<std::size_t>(n)], -share / static_cast<float>(mirror.count));
-    }
-}
-
-/// Moves ContactWork::spread into a point's list and clears it. A cell may stand in `touched` twice.
-void collect_point(ContactWork& contact, ContactPoint& point) {
-    point.first = static_cast<std::int32_t>(contact.phyxel.size());
-    for (const std::int32_t cell : contact.touched) {
-        float& share = contact.spread[static_cast<std::size_t>(cell)];
-        if (share != 0.0f) {
-            contact.phyxel.push_back(cell);
-            contact.share.push_back(share);
-        }
-        share = 0.0f;
-    }
-    contact.touched.clear();
-    point.end = static_cast<std::int32_t>(contact.phyxel.size());
-}
-
-/// sum_i psi_i field_i, in four sums at a time so that additions do not wait for each other.
-float gather(const ContactWork& contact, const ContactPoint& point, const Array<float>& field) {
-    std::array<float, 4> sum{};
-    std::int32_t e = point.first;
-    auto term = [&](std::int32_t at) {
-        return contact.share[static_cast<std::size_t>(at)] *
-               field[static_cast<std::size_t>(contact.phyxel[static_cast<std::size_t>(at)])];
+/// Contacts that are solved: ContactWork::kept, in their order; rank says which of its phyxel's a contact is, by depth.
+/// Those of a rank are kept before any of the next; of the last rank that finds room, evenly chosen ones. Returns the
+/// share of phyxels that keep none, as a factor for the others' stiffness.
+double choose(const Model& model, const tissue::Exchange& exchange, ContactWork& contact) {
+    const auto count = static_cast<std::int32_t>(exchange.contacts.size());
+    contact.owner.resize(static_cast<std::size_t>(count));
+    contact.next.resize(static_cast<std::size_t>(count));
+    contact.rank.assign(static_cast<std::size_t>(count), 0);
+    auto deeper = [&](std::int32_t a, std::int32_t b) {
+        const float x = exchange.contacts[static_cast<std::size_t>(a)].gap_m,
+                    y = exchange.contacts[static_cast<std::size_t>(b)].gap_m;
+        return x != y ? x < y : a < b;
     };
-    for (; e + 4 <= point.end; e += 4)
-        for (std::int32_t k = 0; k < 4; ++k) sum[static_cast<std::size_t>(k)] += term(e + k);
-    for (; e < point.end; ++e) sum[0] += term(e);
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    std::array<std::int32_t, 64> of_rank{};
+    for (std::int32_t c = 0; c < count; ++c) {
+        const auto near = static_cast<std::size_t>(exchange.contacts[static_cast<std::size_t>(c)].near);
+        const auto owner = model.phyxel_of(model.hexels.coordinates(exchange.near[near].hexel));
+        std::int32_t& head = contact.row_of[static_cast<std::size_t>(owner)];
+        contact.owner[static_cast<std::size_t>(c)] = static_cast<std::int32_t>(owner);
+        for (std::int32_t other = head; other >= 0; other = contact.next[static_cast<std::size_t>(other)])
+            ++contact.rank[static_cast<std::size_t>(deeper(c, other) ? other : c)];
+        contact.next[static_cast<std::size_t>(c)] = head;
+        head = c;
+    }
+    for (std::int32_t c = 0; c < count; ++c) {
+        contact.row_of[static_cast<std::size_t>(contact.owner[static_cast<std::size_t>(c)])] = -1;
+        ++of_rank[static_cast<std::size_t>(std::min(63, contact.rank[static_cast<std::size_t>(c)]))];
+    }
+    std::int32_t whole = 0, room = kMaxContactPoints;  // ranks that are kept whole
+    while (whole < 63 && of_rank[static_cast<std::size_t>(whole)] > 0 &&
+           of_rank[static_cast<std::size_t>(whole)] <= room)
+        room -= of_rank[static_cast<std::size_t>(whole++)];
+    const std::int32_t last = of_rank[static_cast<std::size_t>(whole)];
+    contact.kept.clear();
+    for (std::int32_t c = 0, seen = 0; c < count; ++c) {
+        const std::int32_t rank = contact.rank[static_cast<std::size_t>(c)];
+        bool keep = rank < whole;
+        if (rank == whole && last > 0) {  // evenly: where the count of kept ones steps up
+            keep = (seen + 1) * room / std::max(last, room) > seen * room / std::max(last, room);
+            ++seen;
+        }
+        if (keep) contact.kept.push_back(c);
+    }
+    return whole > 0 || last <= kMaxContactPoints ? 1.0 : static_cast<double>(last) / kMaxContactPoints;
 }
 
-void couple_points(Work& work) {
-    ContactWork& contact = work.contact;
-    const std::size_t count = contact.points.size();
-    for (std::size_t c = 0; c < count; ++c) {
-        const ContactPoint& point = contact.points[c];
-        for (std::int32_t e = point.first; e < point.end; ++e) {
-            const auto i = static_cast<std::size_t>(contact.phyxel[static_cast<std::size_t>(e)]);
-            contact.spread[i] = contact.share[static_cast<std::size_t>(e)] * work.inverse_mass_per_kg[i];
-        }
-        for (std::size_t d = c; d < count; ++d) {
-            const float value = gather(contact, contact.points[d], contact.spread);
-            contact.coupling_per_kg[c * kMaxContactPoints + d] = value;
-            contact.coupling_per_kg[d * kMaxContactPoints + c] = value;
-        }
-        for (std::int32_t e = point.first; e < point.end; ++e)
-            contact.spread[static_cast<std::size_t>(contact.phyxel[static_cast<std::size_t>(e)])] = 0.0f;
+/// How many contacts of its phyxel each kept one stands for.
+double stands_for(const ContactWork& contact, std::int32_t c) {
+    const std::int32_t owner = contact.owner[static_cast<std::size_t>(c)];
+    int all = 0, kept = 0;
+    for (const std::int32_t other : contact.owner) all += other == owner ? 1 : 0;
+    for (const std::int32_t other : contact.kept)
+        kept += contact.owner[static_cast<std::size_t>(other)] == owner ? 1 : 0;
+    return static_cast<double>(all) / kept;
+}
+
+void add_touching(const Model& model, const tissue::Exchange& exchange, ContactWork& contact) {
+    const double spacing = model.hexels.spacing_m / kStandardHexel_m;
+    const double stiffness = model.contact.stiffness_N_per_m * spacing * spacing;
+    const bool all = exchange.contacts.size() <= static_cast<std::size_t>(kMaxContactPoints);
+    const double share = all ? 1.0 : choose(model, exchange, contact);
+    const std::size_t count = all ? exchange.contacts.size() : contact.kept.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::int32_t c = all ? static_cast<std::int32_t>(k) : contact.kept[k];
+        const tissue::Contact& from = exchange.contacts[static_cast<std::size_t>(c)];
+        ContactPoint point;
+        point.normal = from.normal;
+        point.tool_velocity_m_per_s = from.tool_velocity_m_per_s;
+        point.stiffness_N_per_m = static_cast<float>(stiffness * (all ? 1.0 : share * stands_for(contact, c)));
+        point.gap_m = from.gap_m;
+        point.instrument = from.instrument;
+        point.near = from.near;
+        point.hexel = exchange.near[static_cast<std::size_t>(from.near)].hexel;
+        contact.points.push_back(point);
     }
 }
 
-/// An impulse more at point c moves all points.
-void push_points(ContactWork& contact, std::size_t c, const Vec3f& impulse) {
-    const float* coupling = &contact.coupling_per_kg[c * kMaxContactPoints];
+/// Impulses that the same hexels had in the tick before, turned to what the law allows.
+void recall(const State& state, ContactWork& contact, double friction) {
+    std::array<bool, tissue::kMostContactPoints> taken{};
+    for (ContactPoint& point : contact.points) {
+        if (point.held()) continue;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(state.contact.count); ++k) {
+            if (taken[k] || state.contact.hexel[k] != point.hexel) continue;
+            const Vec3f before = state.contact.impulse_Ns[k];
+            const float normal = glm::dot(before, point.normal), length = glm::length(before);
+            if (!(normal > kSameNormal * length)) continue;
+            taken[k] = true;
+            Vec3f tangential = before - normal * point.normal;
+            const float most = static_cast<float>(friction) * normal, size = glm::length(tangential);
+            if (size > most) tangential *= most / size;
+            point.impulse_Ns = normal * point.normal + tangential;
+            break;
+        }
+    }
+}
+
+// ---- What carries them
+
+/// Gives a phyxel a row.
+void need_row(ContactWork& contact, std::int64_t phyxel) {
+    std::int32_t& row = contact.row_of[static_cast<std::size_t>(phyxel)];
+    if (row >= 0) return;
+    row = static_cast<std::int32_t>(contact.phyxel.size());
+    contact.phyxel.push_back(static_cast<std::int32_t>(phyxel));
+}
+
+/// Calls visit(phyxel, share) for all phyxels that carry a point; what a ghost carries, the phyxels that it mirrors do.
+template <class Visit>
+void for_each_carrier(const Model& model, const Work& work, const LocalShares& local, const Visit& visit) {
+    for_each_share(model.phyxels, local, [&](std::int64_t cell, float share) {
+        if (!model.phyxel_ghost.test(cell)) return visit(cell, share);
+        const Mirror& mirror = find_mirror(work, cell);
+        for (int n = 0; n < mirror.count; ++n)
+            visit(mirror.phyxel[static_cast<std::size_t>(n)], -share / static_cast<float>(mirror.count));
+    });
+}
+
+/// Fills rows and lines from the local shares of all points.
+void fill_lines(const Model& model, Work& work) {
+    ContactWork& contact = work.contact;
     const std::size_t count = contact.points.size();
-    for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t d = 0; d < count; ++d)
-            contact.velocity_m_per_s[r][d] += coupling[d] * impulse[static_cast<int>(r)];
-}
-
-Vec3f velocity_of(const ContactWork& contact, std::size_t c) {
-    return Vec3f(contact.velocity_m_per_s[0][c], contact.velocity_m_per_s[1][c], contact.velocity_m_per_s[2][c]);
-}
-
-/// Solves point c with all others as they are.
-void solve_point(ContactWork& contact, std::size_t c, float friction, float dt) {
-    ContactPoint& point = contact.points[c];
-    const float coupling = contact.coupling_per_kg[c * kMaxContactPoints + c];
-    if (coupling <= 0.0f) return;  // nothing that moves carries it
-    const Vec3f relative = velocity_of(contact, c) - point.tool_velocity_m_per_s;
-    const float closing = glm::dot(relative, point.normal);
-    const float without = closing - coupling * point.normal_impulse_Ns;
-    const float stiffness = point.stiffness_N_per_m;
-    const float wanted = -stiffness * dt * (point.gap_m + dt * without) / (1.0f + stiffness * dt * dt * coupling);
-    const float normal_impulse = std::fmax(0.0f, wanted);
-
-    // Stick if friction suffices, else slide.
-    Vec3f tangential = point.tangential_impulse_Ns - (relative - closing * point.normal) / coupling;
-    const float most = friction * normal_impulse, length = glm::length(tangential);
-    if (length > most) tangential *= most > 0.0f ? most / length : 0.0f;
-
-    const Vec3f more =
-        (normal_impulse - point.normal_impulse_Ns) * point.normal + (tangential - point.tangential_impulse_Ns);
-    point.normal_impulse_Ns = normal_impulse;
-    point.tangential_impulse_Ns = tangential;
-    if (more != Vec3f(0.0f)) push_points(contact, c, more);
+    for (std::size_t c = 0; c < count; ++c)
+        for_each_carrier(model, work, contact.local[c], [&](std::int64_t phyxel, float) { need_row(contact, phyxel); });
+    contact.stride = padded(static_cast<std::int32_t>(contact.phyxel.size()));
+    const auto stride = static_cast<std::size_t>(contact.stride);
+    std::fill_n(contact.psi.begin(), count * stride, 0.0f);
+    for (std::size_t c = 0; c < count; ++c) {
+        ContactPoint& point = contact.points[c];
+        float* line = contact.psi.data() + c * stride;
+        std::int32_t first = contact.stride, end = 0;
+        for_each_carrier(model, work, contact.local[c], [&](std::int64_t phyxel, float share) {
+            const std::int32_t row = contact.row_of[static_cast<std::size_t>(phyxel)];
+            line[row] += share;
+            first = std::min(first, row);
+            end = std::max(end, row + 1);
+        });
+        point.first = end > 0 ? first / kContactLanes * kContactLanes : 0;
+        point.end = padded(end);
+    }
+    for (std::size_t row = 0; row < stride; ++row) {
+        const bool filled = row < contact.phyxel.size();
+        const auto phyxel = filled ? static_cast<std::size_t>(contact.phyxel[row]) : 0;
+        contact.inverse_mass_per_kg[row] = filled ? work.inverse_mass_per_kg[phyxel] : 0.0f;
+        for (auto& velocity : contact.row_velocity_m_per_s) velocity[row] = 0.0f;
+        if (filled) contact.row_of[phyxel] = -1;
+    }
 }
 
 }  // namespace
 
 ContactWork make_contact_work(const Model& model) {
     ContactWork contact;
-    contact.points.reserve(kMaxContactPoints);
-    contact.phyxel.reserve(kMaxContactPoints * kMostCarriers);
-    contact.share.reserve(kMaxContactPoints * kMostCarriers);
-    contact.touched.reserve(8 * kMostCarriers);
-    contact.coupling_per_kg.assign(kMaxContactPoints * kMaxContactPoints, 0.0f);
-    contact.spread.assign(static_cast<std::size_t>(model.phyxels.cells), 0.0f);
+    const auto cells = static_cast<std::size_t>(model.phyxels.cells);
+    const auto rows = static_cast<std::size_t>(padded(
+        static_cast<std::int32_t>(std::min<std::int64_t>(model.phyxel_initial.count(), kMaxPoints * kMostCarriers))));
+    contact.points.reserve(kMaxPoints);
+    contact.local.resize(kMaxPoints);
+    contact.phyxel.reserve(rows);
+    contact.psi.assign(rows * kMaxPoints, 0.0f);
+    contact.inverse_mass_per_kg.assign(rows, 0.0f);
+    for (auto& velocity : contact.row_velocity_m_per_s) velocity.assign(rows, 0.0f);
+    for (auto& impulse : contact.row_impulse_Ns) impulse.assign(rows, 0.0f);
+    contact.coupling_per_kg.assign(kMaxPoints * kMaxPoints, 0.0f);
+    for (auto& velocity : contact.velocity_m_per_s) velocity.assign(kMaxPoints, 0.0f);
+    contact.row_of.assign(cells, -1);
+    const auto most =
+        static_cast<std::size_t>(std::min<std::int64_t>(model.hexel_initial.count(), tissue::kNearCapacity)) * 2;
+    for (auto* list : {&contact.owner, &contact.next, &contact.rank}) list->reserve(most);
+    contact.kept.reserve(kMaxContactPoints);
     return contact;
 }
 
@@ -174,59 +209,57 @@ void prepare_contacts(const Model& model, const State& state, const tissue::Exch
     ContactWork& contact = work.contact;
     contact.points.clear();
     contact.phyxel.clear();
-    contact.share.clear();
-    contact.impulse_Ns = Vec3(0.0);
+    contact.stride = 0;
+    contact.impulse_Ns.fill(Vec3(0.0));
     contact.started = false;
-    const std::size_t count = exchange.contacts.size(), kept = std::min<std::size_t>(count, kMaxContactPoints);
-    if (kept == 0) return;
-    const double spacing = model.hexels.spacing_m / kStandardHexel_m;
-    const double stiffness =
-        model.contact.stiffness_N_per_m * spacing * spacing * static_cast<double>(count) / static_cast<double>(kept);
-    for (std::size_t k = 0; k < kept; ++k) {
-        const tissue::Contact& from = exchange.contacts[k * count / kept];
-        const tissue::NearHexel& hexel = exchange.near[static_cast<std::size_t>(from.near)];
-        ContactPoint point;
-        point.normal = from.normal;
-        point.tool_velocity_m_per_s = from.tool_velocity_m_per_s;
-        point.stiffness_N_per_m = static_cast<float>(stiffness);
-        point.gap_m = from.gap_m;
-        spread_point(model, state, work, hexel.hexel, hexel.rest_m);
-        resolve_ghosts(model, work);
-        collect_point(contact, point);
-        contact.points.push_back(point);
-    }
-    couple_points(work);
+    add_touching(model, exchange, contact);
+    add_held(model, state, contact);
+    if (contact.points.empty()) return;
+    for (std::size_t c = 0; c < contact.points.size(); ++c)
+        local_shares(model, state, work, contact.points[c].hexel, contact.local[c]);
+    fill_lines(model, work);
+    couple_points(contact);
+    place_held(model, state, exchange, contact);
+    recall(state, contact, model.contact.friction);
 }
 
 void solve_contacts(const Model& model, State& state, Work& work) {
     ContactWork& contact = work.contact;
-    const std::size_t count = contact.points.size();
-    if (count == 0) return;
+    if (contact.points.empty()) return;
     for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t c = 0; c < count; ++c)
-            contact.velocity_m_per_s[r][c] = gather(contact, contact.points[c], state.velocity_m_per_s[r]);
-    auto impulse_of = [](const ContactPoint& p) { return p.normal_impulse_Ns * p.normal + p.tangential_impulse_Ns; };
-    for (std::size_t c = 0; c < count; ++c) {
-        const Vec3f impulse = impulse_of(contact.points[c]);
-        if (impulse != Vec3f(0.0f)) push_points(contact, c, impulse);
-    }
-    const auto friction = static_cast<float>(model.contact.friction);
-    const int sweeps = contact.started ? kSweeps : kFirstSweeps;
+        for (std::size_t row = 0; row < contact.phyxel.size(); ++row)
+            contact.row_velocity_m_per_s[r][row] =
+                state.velocity_m_per_s[r][static_cast<std::size_t>(contact.phyxel[row])];
+    gather_point_velocities(contact);
+    push_all_points(contact);
+    sweep_points(contact, contact.started ? kSweeps : kFirstSweeps, static_cast<float>(model.contact.friction),
+                 work.substep_s);
     contact.started = true;
-    for (int sweep = 0; sweep < sweeps; ++sweep)
-        for (std::size_t c = 0; c < count; ++c) solve_point(contact, c, friction, work.substep_s);
+    spread_impulses(contact);
+    for (std::size_t row = 0; row < contact.phyxel.size(); ++row)
+        for (std::size_t r = 0; r < 3; ++r)
+            state.velocity_m_per_s[r][static_cast<std::size_t>(contact.phyxel[row])] +=
+                contact.inverse_mass_per_kg[row] * contact.row_impulse_Ns[r][row];
 
-    for (std::size_t c = 0; c < count; ++c) {
+    for (std::size_t c = 0; c < contact.points.size(); ++c) {
         ContactPoint& point = contact.points[c];
-        const Vec3f impulse = impulse_of(point);
-        point.gap_m += work.substep_s * glm::dot(velocity_of(contact, c) - point.tool_velocity_m_per_s, point.normal);
-        if (impulse == Vec3f(0.0f)) continue;
-        contact.impulse_Ns += Vec3(impulse);
-        for (std::int32_t e = point.first; e < point.end; ++e) {
-            const auto i = static_cast<std::size_t>(contact.phyxel[static_cast<std::size_t>(e)]);
-            const float gain = contact.share[static_cast<std::size_t>(e)] * work.inverse_mass_per_kg[i];
-            for (std::size_t r = 0; r < 3; ++r) state.velocity_m_per_s[r][i] += gain * impulse[static_cast<int>(r)];
-        }
+        const Vec3f velocity(contact.velocity_m_per_s[0][c], contact.velocity_m_per_s[1][c],
+                             contact.velocity_m_per_s[2][c]);
+        const Vec3f moved_m = work.substep_s * (velocity - point.tool_velocity_m_per_s);
+        point.gap_m += glm::dot(moved_m, point.normal);
+        point.away_m += moved_m;
+        contact.impulse_Ns[static_cast<std::size_t>(point.instrument)] += Vec3(point.impulse_Ns);
+    }
+}
+
+void remember_contacts(State& state, const Work& work) {
+    tissue::ContactMemory& memory = state.contact;
+    memory = {};
+    for (const ContactPoint& point : work.contact.points) {
+        if (point.held() || point.impulse_Ns == Vec3f(0.0f)) continue;
+        const auto k = static_cast<std::size_t>(memory.count++);
+        memory.hexel[k] = point.hexel;
+        memory.impulse_Ns[k] = point.impulse_Ns;
     }
 }
 

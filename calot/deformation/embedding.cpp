@@ -27,10 +27,10 @@ void raw_weights(const Carriers& carriers, const Vec3f& r, std::array<float, kNe
 
 }  // namespace
 
-Stencil embedding_stencil(const tissue::Model& model, const tissue::State& state, const Work&, std::int64_t owner_hexel,
-                          const Vec3f& rest_m) {
+Stencil embedding_stencil(const tissue::Model& model, const tissue::State& state, const Work& work,
+                          std::int64_t owner_hexel, const Vec3f& rest_m) {
     const std::int64_t owner = model.phyxel_of(model.hexels.coordinates(owner_hexel));
-    const Carriers carriers = find_carriers(model, state, owner);
+    const Carriers carriers = find_carriers(model, state, work, owner);
     Stencil stencil;
     if (carriers.count == 0) return stencil;
     std::array<float, kNeighbourhood> weight;
@@ -79,7 +79,7 @@ void embed_points(const tissue::Model& model, const tissue::State& state, const 
             if (shared.phyxel != phyxel) {
                 shared.phyxel = phyxel;
                 shared.centre_m = Vec3f(model.phyxels.centre_m(phyxel));
-                shared.carriers = find_carriers(model, state, phyxel);
+                shared.carriers = find_carriers(model, state, work, phyxel);
                 shared.fields.gather(model, state, work, shared.carriers);
             }
             if (shared.carriers.count == 0) {

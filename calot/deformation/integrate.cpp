@@ -1,10 +1,12 @@
 #include "calot/deformation/integrate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "calot/base/parallel.h"
 #include "calot/deformation/ghosts.h"
+#include "calot/deformation/grasp.h"
 #include "calot/deformation/kernel.h"
 #include "calot/deformation/law.h"
 #include "calot/deformation/links.h"
@@ -16,15 +18,18 @@ using tissue::State;
 
 namespace {
 
-/// Groups of a parallel task: big enough that handing it out costs nothing, and fixed, so that it never depends on
-/// threads. The standard scene is one task: a second thread would gain less than waiting for it may cost.
-constexpr std::int64_t kChunk = 512;
+/// Groups of a parallel task: big enough that handing it out costs nothing (some 25 us of work), small enough that two
+/// threads end together, and fixed, so that it never depends on threads.
+constexpr std::int64_t kChunk = 128;
+/// Up to so many groups are one task: a second thread would gain less than waiting for it may cost.
+constexpr std::int64_t kOneTask = 512;
 
 using Sweep = void (*)(const KernelView&, Groups);
 
 void run(const char* name, Sweep sweep, const KernelView& view, const Work& work) {
     const Groups groups(work.groups);
-    parallel_for(name, 0, static_cast<std::int64_t>(groups.size()), kChunk, [&](std::int64_t low, std::int64_t high) {
+    const auto count = static_cast<std::int64_t>(groups.size());
+    parallel_for(name, 0, count, count <= kOneTask ? kOneTask : kChunk, [&](std::int64_t low, std::int64_t high) {
         sweep(view, groups.subspan(static_cast<std::size_t>(low), static_cast<std::size_t>(high - low)));
     });
 }
@@ -43,10 +48,10 @@ bool all_finite(const State& state, const Work& work) {
     constexpr std::uint32_t kExponent = 0x7f800000u;
     std::uint32_t bad = 0;
     for (const auto& u : state.displacement_m)
-        for (const std::int32_t group : work.groups)
+        for (const Group& group : work.groups)
             for (std::int64_t k = 0; k < kGroupCells; ++k) {
                 std::uint32_t bits;
-                std::memcpy(&bits, &u[static_cast<std::size_t>(group + k)], sizeof(bits));
+                std::memcpy(&bits, &u[static_cast<std::size_t>(group.first + k)], sizeof(bits));
                 bad |= (bits & kExponent) == kExponent ? 1u : 0u;
             }
     return bad == 0;
@@ -54,14 +59,33 @@ bool all_finite(const State& state, const Work& work) {
 
 }  // namespace
 
-std::vector<std::int32_t> make_groups(const Model& model, const State& state) {
-    std::vector<std::int32_t> groups;
+std::vector<Group> make_groups(const Model& model, const State& state) {
+    std::vector<Group> groups;
     for (std::int64_t p = model.phyxels.first; p < model.phyxels.last;) {
         const bool filled = state.phyxel_present.test(p) || model.phyxel_ghost.test(p);
-        if (filled) groups.push_back(static_cast<std::int32_t>(p));
+        if (filled) {
+            groups.emplace_back().first = static_cast<std::int32_t>(p);
+            refresh_group(model, state, groups.back());
+        }
         p += filled ? kGroupCells : 1;
     }
     return groups;
+}
+
+void refresh_group(const Model& model, const State& state, Group& group) {
+    auto bits = [](const BitArray& array, std::int64_t cell) { return static_cast<std::uint16_t>(array.bits32(cell)); };
+    group.present = bits(state.phyxel_present, group.first);
+    group.ghost = bits(model.phyxel_ghost, group.first);
+    for (std::size_t d = 0; d < group.plus.size(); ++d) {
+        group.plus[d] = bits(state.links[d], group.first);
+        group.minus[d] = bits(state.links[d], group.first - model.phyxels.offset(tissue::kLinkDirections[d]));
+    }
+}
+
+Group& group_of(Work& work, std::int64_t phyxel) {
+    auto after = std::upper_bound(work.groups.begin(), work.groups.end(), phyxel,
+                                  [](std::int64_t cell, const Group& group) { return cell < group.first; });
+    return after == work.groups.begin() ? *after : *--after;
 }
 
 KernelView KernelView::make(const Model& model, State& state, Work& work) {
@@ -71,11 +95,12 @@ KernelView KernelView::make(const Model& model, State& state, Work& work) {
         view.velocity_m_per_s[r] = state.velocity_m_per_s[r].data();
         view.gravity_step_m_per_s[r] =
             static_cast<float>(model.deformation.gravity_m_per_s2[static_cast<int>(r)]) * work.substep_s;
+        view.own_force_N[r] = work.own_force_N[r].data();
+        view.step_sum[r] = work.step_sum[r].data();
     }
     for (std::size_t e = 0; e < 9; ++e) {
         view.gradient[e] = work.gradient[e].data();
         view.moment_stress[e] = work.moment_stress[e].data();
-        view.links[e] = state.links[e].bytes();
         view.offset[e] = model.phyxels.offset(tissue::kLinkDirections[e]);
     }
     for (std::size_t e = 0; e < 6; ++e) view.moment_inverse[e] = work.moment_inverse[e].data();
@@ -85,8 +110,6 @@ KernelView KernelView::make(const Model& model, State& state, Work& work) {
     view.hourglass = work.hourglass.data();
     view.lame_mu_Pa = work.lame_mu_Pa.data();
     view.lame_lambda_Pa = work.lame_lambda_Pa.data();
-    view.present = state.phyxel_present.bytes();
-    view.ghost = model.phyxel_ghost.bytes();
     view.law = model.deformation.law;
     view.volume_stiffness_Pa = static_cast<float>(model.deformation.volume_stiffness_Pa);
     view.spacing_m = static_cast<float>(model.phyxels.spacing_m);
@@ -101,14 +124,32 @@ void update_gradients(const Model& model, const State& state, Work& work) {
     run("deformation.gradients", sweep_gradients, view, work);
 }
 
+void update_gradients_about(const Model& model, const State& state, Work& work,
+                            const std::vector<std::int64_t>& phyxels) {
+    // Groups that hold one of the 27 cells about a phyxel: few, found and swept one by one.
+    work.touched_groups.clear();
+    for (const std::int64_t phyxel : phyxels)
+        for (const std::int64_t offset : work.neighbour_offset) {
+            Group* group = &group_of(work, phyxel + offset);
+            if (phyxel + offset >= group->first + kGroupCells || group->touched) continue;
+            group->touched = 1;
+            work.touched_groups.push_back(static_cast<std::int32_t>(group - work.groups.data()));
+        }
+    const KernelView view = KernelView::make(model, const_cast<State&>(state), work);
+    for (const std::int32_t g : work.touched_groups) {
+        Group& group = work.groups[static_cast<std::size_t>(g)];
+        group.touched = 0;
+        sweep_gradients(view, Groups(&group, 1));
+    }
+}
+
 void integrate(const Model& model, State& state, tissue::Exchange& exchange, Work& work) {
-    exchange.contact_force_N = Vec3(0.0);
+    exchange.contact_force_N = exchange.grasper_contact_force_N = Vec3(0.0);
     if (!state.status.ok) return;
     prepare_contacts(model, state, exchange, work);
     const KernelView view = KernelView::make(model, state, work);
-    // Ghosts have no stress; their gradients are wanted by the embedding alone, once a tick.
     KernelView within_tick = view;
-    within_tick.ghost = view.present;
+    within_tick.embedding = false;
     for (int substep = 0; substep < work.substeps; ++substep) {
         // Forces read the neighbours' displacements and moment stresses, gradients the neighbours' displacements:
         // each sweep must end everywhere before the next begins.
@@ -119,7 +160,10 @@ void integrate(const Model& model, State& state, tissue::Exchange& exchange, Wor
         move_ghosts(state, work);
         run("deformation.gradients", sweep_gradients, substep + 1 < work.substeps ? within_tick : view, work);
     }
-    exchange.contact_force_N = work.contact.impulse_Ns / -model.tick_s;
+    exchange.contact_force_N = work.contact.impulse_Ns[0] / -model.tick_s;
+    exchange.grasper_contact_force_N = work.contact.impulse_Ns[1] / -model.tick_s;
+    slip_held(state, exchange, work.contact);
+    remember_contacts(state, work);
     if (!all_finite(state, work)) state.status = {false, "displacement_m", first_bad_cell(model, state), state.tick};
 }
 

@@ -25,6 +25,10 @@ void refresh_all_phyxels(const tissue::Model& model, const tissue::State& state,
 /// Recomputes gradient and moment stress of all phyxels from displacements.
 void update_gradients(const tissue::Model& model, const tissue::State& state, Work& work);
 
+/// The same where it can have changed: of the given phyxels and their neighbours.
+void update_gradients_about(const tissue::Model& model, const tissue::State& state, Work& work,
+                            const std::vector<std::int64_t>& phyxels);
+
 /// Elastic + hourglass energy [J] and kinetic energy [J].
 double elastic_energy_J(const tissue::Model& model, const tissue::State& state, const Work& work);
 double kinetic_energy_J(const tissue::Model& model, const tissue::State& state, const Work& work);

@@ -2,6 +2,10 @@
 // The two sweeps of a substep, a vector of phyxels at a time; reference.h says what they compute. They write only
 // cells of the groups that they are given, and lanes are independent: any split of the groups, any vector width and any
 // instruction set give the same bytes (no fused multiply-add, no sums across lanes).
+//
+// What a cell's force needs from its own place alone, M_i sum w X_ij and the hourglass force, belongs to displacements
+// that the gradient sweep has at hand: it leaves both in `own_force`, and the velocity sweep reads the neighbours'
+// moment stresses only.
 
 #include <array>
 #include <cstdint>
@@ -17,16 +21,16 @@ struct KernelView {
     std::array<float*, 3> displacement_m{}, velocity_m_per_s{};
     std::array<float*, 9> gradient{}, moment_stress{};
     std::array<const float*, 6> moment_inverse{};
+    std::array<float*, 3> own_force_N{};
+    std::array<const float*, 3> step_sum{};
     const float* volume_m3 = nullptr;
     const float* inverse_mass_per_kg = nullptr;
     const float* gravity_share = nullptr;
     const float* hourglass = nullptr;
     const float* lame_mu_Pa = nullptr;
     const float* lame_lambda_Pa = nullptr;
-    std::array<const std::uint8_t*, 9> links{};
     std::array<std::int64_t, 9> offset{};  ///< of the nine positive directions
-    const std::uint8_t* present = nullptr;
-    const std::uint8_t* ghost = nullptr;
+    bool embedding = true;                 ///< the gradient sweep stores G, and ghosts', for whoever embeds points
     tissue::ElasticLaw law = tissue::ElasticLaw::stable_neo_hookean;
     float volume_stiffness_Pa = 0.0f;
     float spacing_m = 0.0f;
@@ -37,14 +41,15 @@ struct KernelView {
     static KernelView make(const tissue::Model& model, tissue::State& state, Work& work);
 };
 
-/// Cells of a group: the widest vector. Narrower ones take a group in parts.
-inline constexpr std::int64_t kGroupCells = 16;
-
 /// The fewest groups that hold all phyxels and ghosts: each begins at the first cell that no earlier one holds. Sweeps
 /// run over ranges of this list, so that empty space costs nothing.
-std::vector<std::int32_t> make_groups(const tissue::Model& model, const tissue::State& state);
+std::vector<Group> make_groups(const tissue::Model& model, const tissue::State& state);
+/// Reads a group's bits anew.
+void refresh_group(const tissue::Model& model, const tissue::State& state, Group& group);
+/// The group of a cell that is or was a phyxel or ghost; for any other, the last that begins before it, or the first.
+Group& group_of(Work& work, std::int64_t phyxel);
 
-using Groups = std::span<const std::int32_t>;
+using Groups = std::span<const Group>;
 
 /// G and M.
 void sweep_gradients(const KernelView& view, Groups groups);

@@ -1,15 +1,18 @@
 // The elastic kernels, a vector of neighbouring cells at a time (kernel.h, reference.h).
 //
 // A neighbour in direction d lies at a constant offset, so its values are one load at i + offset[d] and, the other way,
-// at i - offset[d]; a link is a bit, so the links of a vector of cells are one mask. The link towards -d is the bit of
-// the cell at i - offset[d]. Absent neighbours add exact zeros.
+// at i - offset[d]; a link is a bit, so the links of a vector of cells are one mask, kept ready for every group of
+// cells (Group). Absent neighbours add exact zeros.
 //
-//      links[d] bits:  ... 1 1 0 1 1 1 0 0 ...      lanes of cell i .. i + N - 1
-//                          |     plus = bits at i, minus = bits at i - offset[d]
+//      Group::plus[d]:  ... 1 1 0 1 1 1 0 0 ...      lanes of cell i .. i + N - 1
 //
 // Sums run over faces first (weight 8, applied once), then edges (weight 1). Lengths are in units of the spacing s
 // until the end. Multiplication and addition stay separate so that instruction sets with and without fused
 // multiply-add give the same bytes.
+//
+// What a substep costs, for 16 cells: 72 loads of neighbours' values in the gradient sweep (u and kappa at 18 places),
+// 90 in the velocity sweep (a column of M at 6, two at 12), nearly all across a border of cache lines; 280 and 100
+// additions, 170 and 30 multiplications. Additions bound the first, loads the second (docs/performance.md).
 
 #include "calot/deformation/kernel.h"
 
@@ -70,33 +73,65 @@ HWY_INLINE Lanes along(Lanes a, Lanes b) {
     return Direction<d>::falling ? a - b : a + b;
 }
 
-/// Both links of a direction for the cells from i on.
-struct LinkPair {
-    Mask plus, minus;
+/// A vector of cells: the first one's index, its group and its lane in there.
+struct Place {
+    std::int64_t i;
+    const Group& group;
+    int lane;
+
+    Mask mask(std::uint16_t bits) const { return simd::mask_of(D(), bits, lane); }
+    template <int d>
+    Mask plus() const {
+        return mask(group.plus[d]);
+    }
+    template <int d>
+    Mask minus() const {
+        return mask(group.minus[d]);
+    }
 };
-template <int d>
-HWY_INLINE LinkPair links_of(const KernelView& k, std::int64_t i) {
-    return {simd::mask_at(D(), k.links[d], i), simd::mask_at(D(), k.links[d], i - k.offset[d])};
-}
 
 // ---- Gradients
 
-/// Adds the links along one direction to B [displacement x step].
+/// Adds the links along one direction to B [displacement x step] and to the hourglass force.
 template <int d>
-HWY_INLINE void add_to_b(const KernelView& k, std::int64_t i, const Lanes (&u)[3], Lanes (&b)[9]) {
+HWY_INLINE void add_links(const KernelView& k, const Place& at, const Lanes (&u)[3], Lanes hourglass, Lanes (&b)[9],
+                          Lanes (&force)[3]) {
     using Dir = Direction<d>;
-    const LinkPair link = links_of<d>(k, i);
     const std::int64_t offset = k.offset[d];
+    const Mask plus = at.plus<d>(), minus = at.minus<d>();
+    const Lanes stiffness_plus = hourglass + load(k.hourglass + at.i + offset);
+    const Lanes stiffness_minus = hourglass + load(k.hourglass + at.i - offset);
     for (int r = 0; r < 3; ++r) {
-        const float* p = k.displacement_m[r] + i;
-        const Lanes difference = where(link.plus, load(p + offset) - u[r]) - where(link.minus, load(p - offset) - u[r]);
+        const float* p = k.displacement_m[r] + at.i;
+        const Lanes up = where(plus, load(p + offset) - u[r]), down = where(minus, load(p - offset) - u[r]);
+        const Lanes difference = up - down;
+        force[r] = force[r] + (stiffness_plus * up + stiffness_minus * down);
         if constexpr (Dir::face) {
-            b[3 * r + Dir::first] = all(static_cast<float>(8)) * difference;
+            b[3 * r + Dir::first] = all(8.0f) * difference;
         } else {
             b[3 * r + Dir::first] = b[3 * r + Dir::first] + difference;
             b[3 * r + Dir::second] = along<d>(b[3 * r + Dir::second], difference);
         }
     }
+}
+
+/// B and the hourglass force of a vector of cells.
+HWY_INLINE void add_all_links(const KernelView& k, const Place& at, Lanes hourglass, Lanes (&b)[9], Lanes (&force)[3]) {
+    Lanes u[3];
+    for (int r = 0; r < 3; ++r) {
+        u[r] = load(k.displacement_m[r] + at.i);
+        force[r] = all(0.0f);
+    }
+    add_links<0>(k, at, u, hourglass, b, force);
+    add_links<1>(k, at, u, hourglass, b, force);
+    add_links<2>(k, at, u, hourglass, b, force);
+    for (int r = 0; r < 3; ++r) force[r] = all(8.0f) * force[r];
+    add_links<3>(k, at, u, hourglass, b, force);
+    add_links<4>(k, at, u, hourglass, b, force);
+    add_links<5>(k, at, u, hourglass, b, force);
+    add_links<6>(k, at, u, hourglass, b, force);
+    add_links<7>(k, at, u, hourglass, b, force);
+    add_links<8>(k, at, u, hourglass, b, force);
 }
 
 /// c = a b with b symmetric (xx xy xz yy yz zz).
@@ -164,141 +199,134 @@ HWY_INLINE void stress(const KernelView& k, const Lanes (&g)[9], Lanes mu, Lanes
 }
 
 template <tissue::ElasticLaw law>
-HWY_INLINE void gradients_of(const KernelView& k, std::int64_t i) {
-    Lanes u[3], b[9], inverse[6], g[9], p[9], m[9];
-    for (int r = 0; r < 3; ++r) u[r] = load(k.displacement_m[r] + i);
-    add_to_b<0>(k, i, u, b);
-    add_to_b<1>(k, i, u, b);
-    add_to_b<2>(k, i, u, b);
-    add_to_b<3>(k, i, u, b);
-    add_to_b<4>(k, i, u, b);
-    add_to_b<5>(k, i, u, b);
-    add_to_b<6>(k, i, u, b);
-    add_to_b<7>(k, i, u, b);
-    add_to_b<8>(k, i, u, b);
-    const Lanes spacing = all(k.spacing_m);
+HWY_INLINE void gradients_of(const KernelView& k, const Place& at) {
+    const std::int64_t i = at.i;
+    Lanes b[9], force[3], inverse[6], g[9], p[9], m[9];
+    const Lanes hourglass = load(k.hourglass + i), spacing = all(k.spacing_m);
+    add_all_links(k, at, hourglass, b, force);
     for (int e = 0; e < 6; ++e) inverse[e] = load(k.moment_inverse[e] + i);
     for (int e = 0; e < 9; ++e) b[e] = spacing * b[e];
     multiply_symmetric(b, inverse, g);
     stress<law>(k, g, load(k.lame_mu_Pa + i), load(k.lame_lambda_Pa + i), p);
-    const Lanes volume = load(k.volume_m3 + i), hourglass = load(k.hourglass + i);
+    const Lanes volume = load(k.volume_m3 + i);
     for (int e = 0; e < 6; ++e) inverse[e] = volume * inverse[e];
     multiply_symmetric(p, inverse, m);
     for (int e = 0; e < 9; ++e) {
-        store(g[e], k.gradient[e] + i);
-        store(m[e] - hourglass * g[e], k.moment_stress[e] + i);
+        m[e] = m[e] - hourglass * g[e];
+        store(m[e], k.moment_stress[e] + i);
+    }
+    if (k.embedding)
+        for (int e = 0; e < 9; ++e) store(g[e], k.gradient[e] + i);
+    Lanes step[3];
+    for (int c = 0; c < 3; ++c) step[c] = load(k.step_sum[static_cast<std::size_t>(c)] + i);
+    for (int r = 0; r < 3; ++r) {
+        const Lanes own = m[3 * r] * step[0] + m[3 * r + 1] * step[1] + m[3 * r + 2] * step[2];
+        store(spacing * own + force[r], k.own_force_N[static_cast<std::size_t>(r)] + i);
     }
 }
 
-/// Calls body(i) for the vectors of all groups in which `first` or `second` has a bit.
-template <class Body>
-HWY_INLINE void for_each_vector(Groups groups, const std::uint8_t* first, const std::uint8_t* second,
-                                const Body& body) {
-    const auto lanes = static_cast<std::int64_t>(hn::Lanes(D()));
-    for (const std::int32_t group : groups)
-        for (std::int64_t i = group; i < group + kGroupCells; i += lanes)
-            if ((simd::bits_at(D(), first, i) | simd::bits_at(D(), second, i)) != 0) body(i);
+/// Of ghosts alone, while nobody embeds points: they have no stress.
+HWY_INLINE void ghost_forces_of(const KernelView& k, const Place& at) {
+    Lanes b[9], force[3];
+    add_all_links(k, at, load(k.hourglass + at.i), b, force);
+    for (int r = 0; r < 3; ++r) store(force[r], k.own_force_N[static_cast<std::size_t>(r)] + at.i);
+}
+
+/// Calls body(place) for the vectors of all groups in which `of(group)` has a bit.
+template <class Bits, class Body>
+HWY_INLINE void for_each_vector(Groups groups, const Bits& of, const Body& body) {
+    constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+    for (const Group& group : groups)
+        for (int lane = 0; lane < kGroupCells; lane += kLanes)
+            if (((of(group) >> lane) & ((1u << kLanes) - 1u)) != 0) body(Place{group.first + lane, group, lane});
+}
+
+template <tissue::ElasticLaw law>
+void gradients_with(const KernelView& k, Groups groups) {
+    for_each_vector(
+        groups, [](const Group& group) { return std::uint32_t{group.present} | group.ghost; },
+        [&](const Place& at) HWY_ATTR {
+            const std::uint32_t lanes = (1u << hn::Lanes(D())) - 1u;
+            if (k.embedding || ((std::uint32_t{at.group.present} >> at.lane) & lanes) != 0)
+                gradients_of<law>(k, at);
+            else
+                ghost_forces_of(k, at);
+        });
 }
 
 void gradients(const KernelView& k, Groups groups) {
     if (k.law == tissue::ElasticLaw::stable_neo_hookean)
-        for_each_vector(groups, k.present, k.ghost,
-                        [&](std::int64_t i) HWY_ATTR { gradients_of<tissue::ElasticLaw::stable_neo_hookean>(k, i); });
+        gradients_with<tissue::ElasticLaw::stable_neo_hookean>(k, groups);
     else
-        for_each_vector(groups, k.present, k.ghost, [&](std::int64_t i) HWY_ATTR {
-            gradients_of<tissue::ElasticLaw::saint_venant_kirchhoff>(k, i);
-        });
+        gradients_with<tissue::ElasticLaw::saint_venant_kirchhoff>(k, groups);
 }
 
 // ---- Forces and velocities
 
-struct Sums {
-    Lanes stress[3];     ///< sum w M_j X_ij / s
-    Lanes hourglass[3];  ///< sum w (kappa_i + kappa_j) u_ij
-    Lanes step[3];       ///< sum w X_ij / s
-};
-
-/// One end of a link: M_j and kappa_j of the neighbour at j.
+/// M_j X_ij / s of the neighbours at j along a direction.
 template <int d>
-HWY_INLINE void add_end(const KernelView& k, std::int64_t i, std::int64_t j, Mask mask, const Lanes (&u)[3],
-                        Lanes hourglass, Lanes (&stress)[3], Sums& sums) {
+HWY_INLINE void neighbour_stress(const KernelView& k, std::int64_t j, Mask mask, Lanes (&stress)[3]) {
     using Dir = Direction<d>;
-    const Lanes stiffness = where(mask, hourglass + load(k.hourglass + j));
-    static_cast<void>(i);
     for (int r = 0; r < 3; ++r) {
         const Lanes first = load(k.moment_stress[3 * r + Dir::first] + j);
         if constexpr (Dir::face)
             stress[r] = where(mask, first);
         else
             stress[r] = where(mask, along<d>(first, load(k.moment_stress[3 * r + Dir::second] + j)));
-        sums.hourglass[r] = sums.hourglass[r] + stiffness * (load(k.displacement_m[r] + j) - u[r]);
     }
 }
 
 template <int d>
-HWY_INLINE void add_to_sums(const KernelView& k, std::int64_t i, const Lanes (&u)[3], Lanes hourglass, Sums& sums) {
-    using Dir = Direction<d>;
-    const LinkPair link = links_of<d>(k, i);
+HWY_INLINE void add_stresses(const KernelView& k, const Place& at, Lanes (&sum)[3]) {
     Lanes plus[3], minus[3];
-    add_end<d>(k, i, i + k.offset[d], link.plus, u, hourglass, plus, sums);
-    add_end<d>(k, i, i - k.offset[d], link.minus, u, hourglass, minus, sums);
-    for (int r = 0; r < 3; ++r) sums.stress[r] = sums.stress[r] + (plus[r] - minus[r]);
-    const Lanes excess = where(link.plus, all(1.0f)) - where(link.minus, all(1.0f));
-    sums.step[Dir::first] = sums.step[Dir::first] + excess;
-    if constexpr (!Dir::face) sums.step[Dir::second] = along<d>(sums.step[Dir::second], excess);
+    neighbour_stress<d>(k, at.i + k.offset[d], at.plus<d>(), plus);
+    neighbour_stress<d>(k, at.i - k.offset[d], at.minus<d>(), minus);
+    for (int r = 0; r < 3; ++r) sum[r] = sum[r] + (plus[r] - minus[r]);
 }
 
-HWY_INLINE void velocities_of(const KernelView& k, std::int64_t i, Mask present, Mask ghost) {
-    Lanes u[3];
-    Sums sums;
-    for (int r = 0; r < 3; ++r) {
-        u[r] = load(k.displacement_m[r] + i);
-        sums.stress[r] = sums.hourglass[r] = sums.step[r] = all(0.0f);
-    }
-    const Lanes hourglass = load(k.hourglass + i);
-    add_to_sums<0>(k, i, u, hourglass, sums);
-    add_to_sums<1>(k, i, u, hourglass, sums);
-    add_to_sums<2>(k, i, u, hourglass, sums);
-    const Lanes face_weight = all(8.0f);
-    for (int r = 0; r < 3; ++r) {
-        sums.stress[r] = face_weight * sums.stress[r];
-        sums.hourglass[r] = face_weight * sums.hourglass[r];
-        sums.step[r] = face_weight * sums.step[r];
-    }
-    add_to_sums<3>(k, i, u, hourglass, sums);
-    add_to_sums<4>(k, i, u, hourglass, sums);
-    add_to_sums<5>(k, i, u, hourglass, sums);
-    add_to_sums<6>(k, i, u, hourglass, sums);
-    add_to_sums<7>(k, i, u, hourglass, sums);
-    add_to_sums<8>(k, i, u, hourglass, sums);
+HWY_INLINE void velocities_of(const KernelView& k, const Place& at) {
+    const std::int64_t i = at.i;
+    Lanes sum[3];
+    for (int r = 0; r < 3; ++r) sum[r] = all(0.0f);
+    add_stresses<0>(k, at, sum);
+    add_stresses<1>(k, at, sum);
+    add_stresses<2>(k, at, sum);
+    for (int r = 0; r < 3; ++r) sum[r] = all(8.0f) * sum[r];
+    add_stresses<3>(k, at, sum);
+    add_stresses<4>(k, at, sum);
+    add_stresses<5>(k, at, sum);
+    add_stresses<6>(k, at, sum);
+    add_stresses<7>(k, at, sum);
+    add_stresses<8>(k, at, sum);
     const Lanes spacing = all(k.spacing_m), decay = all(k.decay);
     const Lanes inverse_mass = load(k.inverse_mass_per_kg + i), gravity_share = load(k.gravity_share + i);
+    const Mask present = at.mask(at.group.present), ghost = at.mask(at.group.ghost);
     for (int r = 0; r < 3; ++r) {
-        const float* m = k.moment_stress[3 * r] + i;
-        const Lanes own = load(m) * sums.step[0] + load(k.moment_stress[3 * r + 1] + i) * sums.step[1] +
-                          load(k.moment_stress[3 * r + 2] + i) * sums.step[2];
-        const Lanes impulse = all(k.substep_s) * (spacing * (sums.stress[r] + own) + sums.hourglass[r]);
-        float* v = k.velocity_m_per_s[r] + i;
-        const Lanes gravity = all(k.gravity_step_m_per_s[static_cast<std::size_t>(r)]) * gravity_share;
+        const auto row = static_cast<std::size_t>(r);
+        const Lanes impulse = all(k.substep_s) * (spacing * sum[r] + load(k.own_force_N[row] + i));
+        float* v = k.velocity_m_per_s[row] + i;
+        const Lanes gravity = all(k.gravity_step_m_per_s[row]) * gravity_share;
         const Lanes velocity = decay * (load(v) + inverse_mass * impulse + gravity);
         store(where(present, velocity) + where(ghost, impulse), v);
     }
 }
 
 void velocities(const KernelView& k, Groups groups) {
-    for_each_vector(groups, k.present, k.ghost, [&](std::int64_t i) HWY_ATTR {
-        velocities_of(k, i, simd::mask_at(D(), k.present, i), simd::mask_at(D(), k.ghost, i));
-    });
+    for_each_vector(
+        groups, [](const Group& group) { return std::uint32_t{group.present} | group.ghost; },
+        [&](const Place& at) HWY_ATTR { velocities_of(k, at); });
 }
 
 void displacements(const KernelView& k, Groups groups) {
     const Lanes dt = all(k.substep_s);
-    for_each_vector(groups, k.present, k.present, [&](std::int64_t i) HWY_ATTR {
-        for (int r = 0; r < 3; ++r) {
-            float* u = k.displacement_m[r] + i;
-            store(load(u) + dt * load(k.velocity_m_per_s[r] + i), u);
-        }
-    });
+    for_each_vector(
+        groups, [](const Group& group) { return std::uint32_t{group.present}; },
+        [&](const Place& at) HWY_ATTR {
+            for (int r = 0; r < 3; ++r) {
+                float* u = k.displacement_m[r] + at.i;
+                store(load(u) + dt * load(k.velocity_m_per_s[r] + at.i), u);
+            }
+        });
 }
 
 }  // namespace HWY_NAMESPACE

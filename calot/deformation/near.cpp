@@ -27,7 +27,6 @@ struct CapsuleF {
     Vec3f a, ab;
     float inverse_length2, radius;
     bool bare;
-    Vec3f low, high;  ///< a box that holds everything within the margin
 };
 
 float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
@@ -42,30 +41,13 @@ struct Capsules {
     std::array<CapsuleF, 16> item;
     std::size_t count = 0;
 
-    Capsules(const std::vector<tissue::Capsule>& capsules, double margin_m) {
+    explicit Capsules(const std::vector<tissue::Capsule>& capsules) {
         for (const tissue::Capsule& c : capsules) {
             if (count == item.size()) break;
-            const Vec3f a(c.a_m), b(c.b_m), ab = b - a;
+            const Vec3f a(c.a_m), ab = Vec3f(c.b_m) - a;
             const float length2 = glm::dot(ab, ab);
-            const Vec3f margin(static_cast<float>(c.radius_m + margin_m));
-            item[count++] = {a,
-                             ab,
-                             length2 > 0.0f ? 1.0f / length2 : 0.0f,
-                             static_cast<float>(c.radius_m),
-                             c.bare,
-                             glm::min(a, b) - margin,
-                             glm::max(a, b) + margin};
+            item[count++] = {a, ab, length2 > 0.0f ? 1.0f / length2 : 0.0f, static_cast<float>(c.radius_m), c.bare};
         }
-    }
-    /// Whether any capsule is within `reach_m`, not more than the margin, of a point.
-    bool any_within(const Vec3f& p, float reach_m) const {
-        for (std::size_t k = 0; k < count; ++k) {
-            const CapsuleF& c = item[k];
-            if (p.x < c.low.x || p.x > c.high.x || p.y < c.low.y || p.y > c.high.y || p.z < c.low.z || p.z > c.high.z)
-                continue;
-            if (distance_to_surface(c, p) <= reach_m) return true;
-        }
-        return false;
     }
     float distance(const Vec3f& p, std::uint32_t which = ~0u) const {
         float nearest = 1e9f;
@@ -104,15 +86,43 @@ std::uint64_t surface_hexels(const tissue::Model& model, const Work& work, const
     return own & ~inside;
 }
 
-/// Away from the tissue at rest: against the sum of the directions to the 26 neighbours that are filled, each weighted
-/// by its inverse distance. 0 where they balance, as in a sheet one hexel thick.
-Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, std::int64_t hexel) {
+/// The nine rows of three cells about a hexel, along the lattice's fastest axis: where they are, and for each of the
+/// eight ways to fill one, minus the sum of the directions to the filled ones, weighted by their inverse distance.
+struct Rows {
+    std::array<std::int64_t, 9> offset;  ///< of a row's first cell
+    std::array<std::array<Vec3f, 8>, 9> outward;
+
+    explicit Rows(const Lattice& hexels) {
+        const int fast = hexels.stride.x == 1   ? 0
+                         : hexels.stride.y == 1 ? 1
+                                                : 2,
+                  b = (fast + 1) % 3, c = (fast + 2) % 3;
+        for (int row = 0; row < 9; ++row) {
+            Int3 step(0);
+            step[b] = row % 3 - 1;
+            step[c] = row / 3 - 1;
+            step[fast] = -1;
+            offset[static_cast<std::size_t>(row)] = hexels.offset(step);
+            for (int bits = 0; bits < 8; ++bits) {
+                Vec3f& sum = outward[static_cast<std::size_t>(row)][static_cast<std::size_t>(bits)];
+                sum = Vec3f(0.0f);
+                for (int k = 0; k < 3; ++k) {
+                    step[fast] = k - 1;
+                    const Vec3f direction(step);
+                    if ((bits >> k) & 1) sum -= direction / std::fmax(1.0f, glm::dot(direction, direction));
+                }
+            }
+        }
+    }
+};
+
+/// Away from the tissue at rest: against the sum of the directions to the 26 neighbours that are filled. 0 where they
+/// balance, as in a sheet one hexel thick.
+Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const Rows& rows, std::int64_t hexel) {
     Vec3f outward(0.0f);
-    for (const NeighbourLink& neighbour : neighbour_links()) {
-        const std::int64_t cell = hexel + model.hexels.offset(neighbour.step);
-        const Vec3f step(neighbour.step);
-        if (state.hexel_present.test(cell) || model.hexel_held.test(cell))
-            outward -= step / std::fmax(1.0f, glm::dot(step, step));
+    for (std::size_t row = 0; row < rows.offset.size(); ++row) {
+        const std::int64_t cell = hexel + rows.offset[row];
+        outward += rows.outward[row][(state.hexel_present.bits32(cell) | model.hexel_held.bits32(cell)) & 7u];
     }
     return outward;
 }
@@ -167,11 +177,11 @@ float bound_stretch(const CarrierFields& fields, float half_m) {
 
 /// Embeds the surface hexels of one phyxel and keeps those within reach.
 void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
-                const OccupancyShifts& shifts, const Capsules& capsules, std::int64_t phyxel, const Int3& c,
-                float reach_m) {
+                const OccupancyShifts& shifts, const Rows& rows, const Capsules& capsules, std::int64_t phyxel,
+                const Int3& c, float reach_m) {
     const std::uint64_t surface = surface_hexels(model, work, shifts, phyxel);
     if (surface == 0) return;
-    const Carriers carriers = find_carriers(model, state, phyxel);
+    const Carriers carriers = find_carriers(model, state, work, phyxel);
     if (carriers.count == 0) return;
     CarrierFields fields;
     fields.gather(model, state, work, carriers);
@@ -200,9 +210,43 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
         if (item.distance_m > reach_m) continue;
         item.hexel = model.hexels.index(cell);
         item.bare_gap_m = capsules.bare_distance(item.world_m) - half_hexel_m;
-        item.outward = turn_normal(deformation_gradient_of(f), rest_outward(model, state, item.hexel));
+        item.outward = turn_normal(deformation_gradient_of(f), rest_outward(model, state, rows, item.hexel));
         keep(exchange.near, item);
     }
+}
+
+/// Lanes of the phyxels of a group whose centres are within `reach_m` of a capsule.
+std::uint32_t group_within(const tissue::Model& model, const tissue::State& state, const Capsules& capsules,
+                           const Group& group, float reach_m) {
+    const auto first = static_cast<std::size_t>(group.first);
+    std::array<std::array<float, kGroupCells>, 3> at;  // in the world
+    Int3 c = model.phyxels.coordinates(group.first);
+    const Int3 stride = model.phyxels.stride;
+    const int fast = stride.x == 1 ? 0 : stride.y == 1 ? 1 : 2;
+    for (std::size_t lane = 0; lane < kGroupCells; ++lane) {
+        if (c[fast] > model.phyxels.size[fast])
+            c = model.phyxels.coordinates(group.first + static_cast<std::int64_t>(lane));
+        const Vec3 centre_m = model.phyxels.centre_m(c);
+        for (std::size_t r = 0; r < 3; ++r)
+            at[r][lane] = static_cast<float>(centre_m[static_cast<int>(r)]) + state.displacement_m[r][first + lane];
+        ++c[fast];
+    }
+    std::array<std::uint32_t, kGroupCells> within{};
+    for (std::size_t k = 0; k < capsules.count; ++k) {
+        const CapsuleF& capsule = capsules.item[k];
+        const float most = (capsule.radius + reach_m) * (capsule.radius + reach_m);
+        for (std::size_t lane = 0; lane < kGroupCells; ++lane) {  // a vector at a time
+            const float x = at[0][lane] - capsule.a.x, y = at[1][lane] - capsule.a.y, z = at[2][lane] - capsule.a.z;
+            float t = (x * capsule.ab.x + y * capsule.ab.y + z * capsule.ab.z) * capsule.inverse_length2;
+            t = t < 0.0f ? 0.0f : t;
+            t = t > 1.0f ? 1.0f : t;
+            const float dx = x - t * capsule.ab.x, dy = y - t * capsule.ab.y, dz = z - t * capsule.ab.z;
+            within[lane] |= dx * dx + dy * dy + dz * dz <= most ? 1u : 0u;
+        }
+    }
+    std::uint32_t bits = 0;
+    for (std::size_t lane = 0; lane < kGroupCells; ++lane) bits |= within[lane] << lane;
+    return bits;
 }
 
 }  // namespace
@@ -213,25 +257,18 @@ void find_near(const tissue::Model& model, const tissue::State& state, tissue::E
     if (exchange.capsules.empty()) return;
     const OccupancyShifts shifts(model.hexels_per_edge);
     const double phyxel_reach_m = reach_m + kPhyxelMargin * model.phyxels.spacing_m;
-    const Capsules capsules(exchange.capsules, phyxel_reach_m);
-    const Int3 size = model.phyxels.size;
-    const Vec3f origin_m(model.phyxels.origin_m);
-    const auto spacing_m = static_cast<float>(model.phyxels.spacing_m);
-    for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y) {
-            const std::int64_t row = model.phyxels.index(0, y, z);
-            for (int x = 0; x < size.x; ++x) {
-                const std::int64_t phyxel = row + std::int64_t{x} * model.phyxels.stride.x;
-                if (!state.phyxel_present.test(phyxel)) continue;
-                const auto p = static_cast<std::size_t>(phyxel);
-                const Vec3f world_m =
-                    origin_m + spacing_m * Vec3f(Int3(x, y, z)) +
-                    Vec3f(state.displacement_m[0][p], state.displacement_m[1][p], state.displacement_m[2][p]);
-                if (!capsules.any_within(world_m, static_cast<float>(phyxel_reach_m))) continue;
-                add_hexels(model, state, exchange, work, shifts, capsules, phyxel, {x, y, z},
-                           static_cast<float>(reach_m));
-            }
+    const Capsules capsules(exchange.capsules);
+    const Rows rows(model.hexels);
+    const auto reach = static_cast<float>(phyxel_reach_m);
+    for (const Group& group : work.groups) {
+        if (group.present == 0) continue;
+        for (std::uint32_t rest = group.present & group_within(model, state, capsules, group, reach); rest != 0;
+             rest &= rest - 1) {
+            const std::int64_t phyxel = group.first + __builtin_ctz(rest);
+            add_hexels(model, state, exchange, work, shifts, rows, capsules, phyxel, model.phyxels.coordinates(phyxel),
+                       static_cast<float>(reach_m));
         }
+    }
     std::sort(exchange.near.begin(), exchange.near.end(),
               [](const tissue::NearHexel& a, const tissue::NearHexel& b) { return a.hexel < b.hexel; });
 }

@@ -5,7 +5,9 @@
 
 #include "calot/deformation/ghosts.h"
 #include "calot/deformation/integrate.h"
+#include "calot/deformation/kernel.h"
 #include "calot/deformation/links.h"
+#include "calot/deformation/neighbours.h"
 #include "calot/deformation/stable_mass.h"
 
 namespace calot::deformation {
@@ -125,6 +127,20 @@ PhyxelRest phyxel_rest(const Model& model, const State& state, const Work& work,
 
 namespace {
 
+/// The live links as the kernels and the embedding want them.
+void store_links(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
+    const auto cell = static_cast<std::size_t>(phyxel);
+    Vec3 sum(0.0);
+    std::uint32_t word = 0;
+    for_each_link(model.phyxels, state.links, phyxel, [&](std::int64_t, const Int3& step, double weight) {
+        sum += weight * Vec3(step);
+        word |= 1u << neighbour_index(step);
+    });
+    work.link_word[cell] = word;
+    for (std::size_t r = 0; r < 3; ++r) work.step_sum[r][cell] = static_cast<float>(sum[static_cast<int>(r)]);
+    refresh_group(model, state, group_of(work, phyxel));
+}
+
 /// Stores what depends on one cell alone, and on which phyxels a ghost mirrors.
 void store_rest(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
     const auto cell = static_cast<std::size_t>(phyxel);
@@ -137,11 +153,13 @@ void store_rest(const Model& model, const State& state, Work& work, std::int64_t
     work.hourglass[cell] = static_cast<float>(rest.hourglass_N_per_m);
     work.lame_mu_Pa[cell] = static_cast<float>(rest.mu_Pa);
     work.lame_lambda_Pa[cell] = static_cast<float>(rest.lambda_Pa);
+    store_links(model, state, work, phyxel);
     refresh_pull(model, state, work, phyxel);
     if (model.phyxel_ghost.test(phyxel)) refresh_mirror(model, state, work, phyxel);
     if (upper[0] == 0.0) {
         for (auto& component : work.gradient) component[cell] = 0.0f;
         for (auto& component : work.moment_stress) component[cell] = 0.0f;
+        for (auto& component : work.own_force_N) component[cell] = 0.0f;
     }
 }
 

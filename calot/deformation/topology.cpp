@@ -236,7 +236,7 @@ void sever_burnt_links(const tissue::Model& model, tissue::State& state, tissue:
         work.changed.clear(phyxel);
         refresh_phyxel(model, state, work, phyxel);
     }
-    update_gradients(model, state, work);
+    update_gradients_about(model, state, work, exchange.changed_phyxels);
 }
 
 }  // namespace calot::deformation

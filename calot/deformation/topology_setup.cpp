@@ -150,6 +150,7 @@ void initialise_topology(const tissue::Model& model, const tissue::State& state,
             }
 
     const auto& links = neighbour_links();
+    for (std::size_t k = 0; k < links.size(); ++k) work.neighbour_offset[k] = model.phyxels.offset(links[k].step);
     work.hexel_weight.assign(static_cast<std::size_t>(kNeighbourhood * model.hexels_per_phyxel()), 0.0f);
     for (int bit = 0; bit < model.hexels_per_phyxel(); ++bit)
         for (int k = 0; k < kNeighbourhood; ++k) {

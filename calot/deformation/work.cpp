@@ -16,7 +16,11 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
         field->assign(cells, 0.0f);
     for (auto& component : work.gradient) component.assign(cells, 0.0f);
     for (auto& component : work.moment_stress) component.assign(cells, 0.0f);
+    for (auto& component : work.own_force_N) component.assign(cells, 0.0f);
+    for (auto& component : work.step_sum) component.assign(cells, 0.0f);
+    work.link_word.assign(cells, 0);
     work.groups = make_groups(model, state);
+    work.touched_groups.reserve(work.groups.size());
     work.contact = make_contact_work(model);
     work.substeps = model.deformation.substeps;
     work.substep_s = static_cast<float>(model.tick_s / work.substeps);

@@ -21,6 +21,17 @@ struct Mirror {
     std::array<float, 3> face_m{};  ///< displacement of the held face; 0 unless somebody moves the organ
 };
 
+/// Cells of a group: the widest vector. Narrower ones take a group in parts.
+inline constexpr std::int64_t kGroupCells = 16;
+
+/// Sixteen cells in a row and what the kernels ask of them, as lane masks: lane k is bit k (kernel.h).
+struct Group {
+    std::int32_t first = 0;  ///< cell
+    std::uint16_t present = 0, ghost = 0;
+    std::uint16_t touched = 0;                     ///< scratch of update_gradients_about, 0 between calls
+    std::array<std::uint16_t, 9> plus{}, minus{};  ///< links towards +d and -d
+};
+
 /// [phyxels.cells] each. Cells without a phyxel hold zeros. Ghosts have moments and gradients, but no volume or mass.
 struct Work {
     // Rest properties, recomputed for a phyxel whenever its hexels or links change (refresh_phyxel)
@@ -33,11 +44,14 @@ struct Work {
     Array<float> hourglass;                      ///< kappa
     Array<float> lame_mu_Pa, lame_lambda_Pa;     ///< volume averages over surviving hexels
     Array<float> pull_N_per_m2;                  ///< of a phyxel's own stress at its neighbours (stable_mass.h)
-    std::vector<Mirror> mirrors;                 ///< of all ghosts, in the order of their cells
+    std::array<Array<float>, 3> step_sum;        ///< sum w X_ij / s over live links
+    Array<std::uint32_t> link_word;  ///< live links: bit k towards cell k of the neighbourhood (neighbours.h)
+    std::vector<Mirror> mirrors;     ///< of all ghosts, in the order of their cells
 
     // Always current: belongs to State::displacement_m at the end of integrate() and after sever_burnt_links()
     std::array<Array<float>, 9> gradient;       ///< G, row-major: gradient[3 r + c] = du_r / dX_c
     std::array<Array<float>, 9> moment_stress;  ///< M = v P A^-1 - kappa G, row-major
+    std::array<Array<float>, 3> own_force_N;    ///< M_i sum w X_ij + sum w (kappa_i + kappa_j) u_ij
 
     // Topology and embedding (initialise_topology)
     Array<std::uint64_t> held;           ///< [phyxels.cells] cells of Model::hexel_held, bits as in occupancy
@@ -46,12 +60,12 @@ struct Work {
     Array<std::uint32_t> search_mark;    ///< [phyxels.cells] last search of crumbs that came by
     Array<std::int64_t> search_stack;    ///< [phyxels.cells]
     std::uint32_t search = 0;            ///< number of the last search
-    Array<float> hexel_weight;           ///< [m^3][27] kernel of hexel centres towards the 3^3 phyxels about their own
+    std::array<std::int64_t, 27> neighbour_offset{};  ///< of cell k of the neighbourhood (neighbours.h)
+    Array<float> hexel_weight;  ///< [m^3][27] kernel of hexel centres towards the 3^3 phyxels about their own
 
-    /// First cells of groups of kGroupCells cells in a row that hold all phyxels and ghosts and do not overlap
-    /// (kernel.h)
-    std::vector<std::int32_t> groups;
-    ContactWork contact;  ///< one tick's contact points
+    std::vector<Group> groups;                 ///< hold all phyxels and ghosts, do not overlap, ascending
+    std::vector<std::int32_t> touched_groups;  ///< scratch
+    ContactWork contact;                       ///< one tick's contact points
 
     int substeps = 1;
     float substep_s = 1e-3f;

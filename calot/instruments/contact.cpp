@@ -64,11 +64,13 @@ Vec3 outward_of(const anatomy::Shape& shape, const Vec3& p) {
     return length > 0.0 ? gradient / length : Vec3(0.0);
 }
 
-Vec3 organ_force_N(const anatomy::Shape& shape, const std::vector<tissue::Capsule>& capsules) {
+Vec3 organ_force_N(const anatomy::Shape& shape, const std::vector<tissue::Capsule>& capsules,
+                   tissue::Instrument instrument) {
     const Box bounds = shape.bounds_m();
     double deepest_m = 0.0;
     Vec3 where(0.0);
     for (const tissue::Capsule& c : capsules) {
+        if (c.instrument != instrument) continue;
         const Box wide{bounds.low - c.radius_m, bounds.high + c.radius_m};
         double t0, t1;
         if (!overlap(wide, {glm::min(c.a_m, c.b_m), glm::max(c.a_m, c.b_m)}) || !clip(c.a_m, c.b_m, wide, t0, t1))
@@ -112,6 +114,7 @@ Touch touch(const tissue::Capsule& capsule, double dt_s, const tissue::NearHexel
     result.normal = Vec3f(normal);
     result.gap_m = static_cast<float>(gap_m);
     result.tool_velocity_m_per_s = Vec3f(glm::mix(capsule.velocity_a_m_per_s, capsule.velocity_b_m_per_s, t));
+    result.instrument = capsule.instrument;
     return result;
 }
 
@@ -127,6 +130,7 @@ void find_contacts(const tissue::Model& model, const tissue::State&, tissue::Exc
         Touch first, second;
         bool has_first = false, has_second = false;
         for (const tissue::Capsule& capsule : exchange.capsules) {
+            if (!capsule.solid) continue;
             const Touch found = touch(capsule, model.tick_s, hexel, point_radius_m);
             if (found.gap_m > margin_m) continue;
             if (!has_first || found.gap_m < first.gap_m) {
@@ -140,15 +144,18 @@ void find_contacts(const tissue::Model& model, const tissue::State&, tissue::Exc
             }
         }
         auto add = [&](const Touch& t) {
-            exchange.contacts.push_back({static_cast<std::int32_t>(k), t.normal, t.gap_m, t.tool_velocity_m_per_s});
+            exchange.contacts.push_back(
+                {static_cast<std::int32_t>(k), t.normal, t.gap_m, t.tool_velocity_m_per_s, t.instrument});
         };
         if (has_first) add(first);
         if (has_second && glm::dot(first.normal, second.normal) < kWedgeCosine) add(second);
     }
 
-    exchange.organ_force_N = Vec3(0.0);
-    for (const tissue::RigidOrgan& organ : model.organs)
-        exchange.organ_force_N += organ_force_N(*organ.shape, exchange.capsules);
+    exchange.organ_force_N = exchange.grasper_organ_force_N = Vec3(0.0);
+    for (const tissue::RigidOrgan& organ : model.organs) {
+        exchange.organ_force_N += organ_force_N(*organ.shape, exchange.capsules, tissue::Instrument::hook);
+        exchange.grasper_organ_force_N += organ_force_N(*organ.shape, exchange.capsules, tissue::Instrument::grasper);
+    }
 }
 
 }  // namespace calot::instruments

@@ -29,8 +29,8 @@ namespace calot::instruments {
 inline constexpr double kOrganStiffness_N_per_m = 1000.0;
 
 /// From Exchange::capsules and ::near: one-sided constraints into Exchange::contacts, and the penalty force of rigid
-/// organs on the hook into Exchange::organ_force_N: per organ, its stiffness times the greatest depth found at points
-/// along the capsules, along the gradient of its distance.
+/// organs on the instruments into Exchange::organ_force_N and ::grasper_organ_force_N: per organ, its stiffness times
+/// the greatest depth found at points along the capsules, along the gradient of its distance.
 void find_contacts(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange);
 
 /// How a capsule touches a point of radius `point_radius_m` at the start of the tick.
@@ -38,6 +38,7 @@ struct Touch {
     Vec3f normal{0.0f};  ///< unit, out of the capsule
     float gap_m = 0.0f;
     Vec3f tool_velocity_m_per_s{0.0f};
+    tissue::Instrument instrument = tissue::Instrument::hook;
 };
 Touch touch(const tissue::Capsule& capsule, double dt_s, const tissue::NearHexel& hexel, double point_radius_m);
 

@@ -81,6 +81,7 @@ simulation::Setup build(const Scene& scene, std::vector<anatomy::MeshReport>* re
     setup.seed = scene.seed;
     setup.duration_s = scene.duration_s;
     setup.hook = scene.hook;
+    setup.grasper = scene.grasper;
     setup.smoke = scene.smoke;
     setup.anatomy = build_anatomy(scene, reports);
     check_memory(scene, setup.anatomy);
@@ -98,10 +99,20 @@ simulation::Setup build(const Scene& scene, std::vector<anatomy::MeshReport>* re
                          "move the key, or [hook] trocar_offset_mm");
         keyframes.push_back({key.time_s, tip_m, key.roll_rad});
     }
+    setup.grasper_trocar_m = locate(scene.grasper_trocar, setup.anatomy, "[grasper] trocar", scene, problems);
+    std::vector<simulation::GrasperKeyframe> left;
+    for (const ScriptGrasperKey& key : scene.grasper_script) {
+        const Vec3 tip_m = locate(key.tip, setup.anatomy, "the grasper's script", scene, problems);
+        if (glm::distance(tip_m, setup.grasper_trocar_m) < 0.02)
+            problems.add(key.tip.place, fmt::format("at {:g} s the grasper is within 20 mm of its trocar", key.time_s),
+                         "move the key, or [grasper] trocar_offset_mm");
+        left.push_back({key.time_s, tip_m, key.roll_rad, key.jaw});
+    }
     problems.throw_if_any();
     std::vector<simulation::Burst> bursts;
     for (const ScriptBurst& entry : scene.bursts) bursts.push_back(entry.burst);
     setup.script = simulation::Script(trocar_m, std::move(keyframes), std::move(bursts));
+    setup.script.set_grasper(setup.grasper_trocar_m, std::move(left));
 
     try {
         setup.model = tissue::sample(setup.anatomy, scene.sampling, scene.materials);

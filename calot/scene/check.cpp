@@ -12,19 +12,25 @@ namespace calot::scene {
 
 namespace {
 
+template <class Keys>
+void check_times(const Keys& keys, const char* what, Problems& problems) {
+    for (std::size_t k = 1; k < keys.size(); ++k) {
+        const double before_s = keys[k - 1].time_s, time_s = keys[k].time_s;
+        if (!(time_s > before_s))
+            problems.add(keys[k].tip.place,
+                         fmt::format("{} at {:g} s comes after the one at {:g} s", what, time_s, before_s),
+                         "times must increase from key to key");
+        else if (time_s - before_s < 1e-3)
+            problems.add(keys[k].tip.place, fmt::format("{}s less than a tick (0.001 s) apart", what), "leave one out");
+    }
+}
+
 void check_script(const Scene& scene, Problems& problems) {
     const Place whole{scene.file, 0, 0};
     if (scene.script.empty())
         problems.add(whole, "the script has no [[script.key]]", "give at least one, so that the hook is somewhere");
-    for (std::size_t k = 1; k < scene.script.size(); ++k) {
-        const ScriptKey &before = scene.script[k - 1], &key = scene.script[k];
-        if (!(key.time_s > before.time_s))
-            problems.add(key.tip.place,
-                         fmt::format("script key at {:g} s comes after the one at {:g} s", key.time_s, before.time_s),
-                         "times must increase from key to key");
-        else if (key.time_s - before.time_s < 1e-3)
-            problems.add(key.tip.place, "script keys less than a tick (0.001 s) apart", "leave one out");
-    }
+    check_times(scene.script, "script key", problems);
+    check_times(scene.grasper_script, "grasper key", problems);
     std::vector<std::size_t> order(scene.bursts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -99,6 +99,24 @@ Group hook_group() {
     return group;
 }
 
+Group grasper_group() {
+    Group group{"grasper", "The other hand's grasper. It is there when the script has [[script.grasper]] keys.", {}, {}};
+    KeyTable<Scene> t(group);
+    t.number("shaft_diameter_mm", kMm, 1, 20, [](Scene& s) -> auto& { return s.grasper.shaft_diameter_m; }, "");
+    t.number("shaft_length_mm", kMm, 50, 600, [](Scene& s) -> auto& { return s.grasper.shaft_length_m; }, "");
+    t.number("jaw_length_mm", kMm, 3, 60, [](Scene& s) -> auto& { return s.grasper.jaw_length_m; },
+      "From the hinge to the tips.");
+    t.number("jaw_diameter_mm", kMm, 0.5, 10, [](Scene& s) -> auto& { return s.grasper.jaw_diameter_m; },
+      "Of each jaw, a rod with round ends.");
+    t.number("opening_deg", kDegree, 5, 120, [](Scene& s) -> auto& { return s.grasper.opening_rad; },
+      "Between the jaws, wide open.");
+    t.text("trocar", [](Scene& s) -> auto& { return s.grasper_trocar.landmark; },
+      "Landmark about which the shaft pivots; empty: the origin.");
+    t.vector("trocar_offset_mm", kMm, -500, 500, [](Scene& s) -> auto& { return s.grasper_trocar.offset_m; },
+      "The pivot, from that landmark.");
+    return group;
+}
+
 Group camera_group() {
     Group group{"camera", "The laparoscope.", {}, {}};
     KeyTable<Scene> t(group);
@@ -162,6 +180,35 @@ Group script_key_group() {
     return group;
 }
 
+Group script_grasper_group() {
+    Group group{
+        "script.grasper",
+        "The other hand: where the grasper's tip is at a time, and how far its jaws are open. Closing, they take hold\n"
+        "of the tissue between them; opening, they let go. No such key: there is no grasper.",
+        {},
+        {}};
+    using K = ScriptGrasperKey;
+    KeyTable<K> t(group);
+    t.number("t", kSecond, 0, 3600, [](K& k) -> auto& { return k.time_s; },
+      "Time, later than the key before.").required = true;
+    t.text("at", [](K& k) -> auto& { return k.tip.landmark; },
+      "Landmark (`calot inspect` lists them); empty: the origin.");
+    t.vector("offset_mm", kMm, -500, 500, [](K& k) -> auto& { return k.tip.offset_m; },
+      "From that landmark: x to the patient's left, y cranial, z anterior.");
+    t.number("roll_deg", kDegree, -720, 720, [](K& k) -> auto& { return k.roll_rad; },
+      "Turn about the shaft; at 0 a jaw opens downwards.");
+    t.number("jaw", kNoUnit, 0, 1, [](K& k) -> auto& { return k.jaw; }, "0 closed, 1 wide open.");
+    group.records =
+        Group::Records{[](const Scene& s) { return s.grasper_script.size(); },
+                       [](Scene& s) { s.grasper_script.clear(); },
+                       [](Scene& s, const Place& place) -> void* {
+                           s.grasper_script.emplace_back().tip.place = place;
+                           return &s.grasper_script.back();
+                       },
+                       [](Scene& s, std::size_t k) -> void* { return &s.grasper_script[k]; }};
+    return group;
+}
+
 Group script_burst_group() {
     Group group{"script.burst", "The foot: from when to when the pedal is down.", {}, {}};
     using B = ScriptBurst;
@@ -189,6 +236,7 @@ std::vector<Group> groups(const Scene& scene) {
     std::vector<Group> all{scene_group(), anatomy_group(), triangle_group(), block_group(), sampling_group()};
     for (Group& group : physics_groups()) all.push_back(std::move(group));
     all.push_back(hook_group());
+    all.push_back(grasper_group());
     all.push_back(camera_group());
     all.push_back(picture_group());
     all.push_back(run_group());
@@ -196,6 +244,7 @@ std::vector<Group> groups(const Scene& scene) {
     all.push_back(mesh_group());
     all.push_back(script_key_group());
     all.push_back(script_burst_group());
+    all.push_back(script_grasper_group());
     return all;
 }
 

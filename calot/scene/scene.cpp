@@ -7,6 +7,7 @@ namespace calot::scene {
 Scene::Scene() : materials(tissue::default_materials()), material_like(materials.size()) {
     camera_eye.offset_m = Vec3(0.0, -0.03, 0.08);
     trocar.offset_m = Vec3(0.0, -0.08, 0.14);
+    grasper_trocar.offset_m = Vec3(-0.08, 0.02, 0.12);
     script.push_back({0.0, {"", Vec3(0.0, 0.0, 0.03), {}}, 0.0});
     // Every value becomes one that a file can say: written out and read again, it is the same to the last bit.
     for (const Group& group : groups(*this)) {

@@ -12,6 +12,7 @@
 #include "calot/anatomy/calots_triangle.h"
 #include "calot/anatomy/mesh_shape.h"
 #include "calot/effects/smoke.h"
+#include "calot/instruments/grasper.h"
 #include "calot/instruments/hook.h"
 #include "calot/simulation/setup.h"
 #include "calot/tissue/sampling.h"
@@ -38,6 +39,14 @@ struct ScriptKey {
     double time_s = 0.0;
     Anchor tip;
     double roll_rad = 0.0;
+};
+
+/// The other hand, at one moment.
+struct ScriptGrasperKey {
+    double time_s = 0.0;
+    Anchor tip;
+    double roll_rad = 0.0;
+    double jaw = 1.0;
 };
 
 struct ScriptBurst {
@@ -97,6 +106,8 @@ struct Scene {
 
     instruments::HookShape hook;
     Anchor trocar;
+    instruments::GrasperShape grasper;
+    Anchor grasper_trocar;
     Anchor camera_eye, camera_target;
     double field_of_view_deg = 60.0;
     Picture picture;
@@ -105,6 +116,7 @@ struct Scene {
     double max_memory_GB = 4.0;
     std::vector<ScriptKey> script;
     std::vector<ScriptBurst> bursts;
+    std::vector<ScriptGrasperKey> grasper_script;  ///< none: there is no grasper
 
     std::vector<Warning> warnings;  ///< found while reading
     std::string directory;          ///< paths of meshes are relative to this

@@ -128,6 +128,8 @@ std::string defaults_text() {
         ScriptBurst burst;
         burst.burst.to_s = 1.0;
         if (group.path == "script.burst") record = &burst;
+        ScriptGrasperKey grasp;
+        if (group.path == "script.grasper") record = &grasp;
         if (group.records && !absent) record = group.records->at(scene, 0);
         if (group.path == "materials.fat")
             out += comment(

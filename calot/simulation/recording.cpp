@@ -15,13 +15,14 @@
 //   | kind u32 | raw bytes u32 | stored bytes u32 | reserved u32 | XXH3 of the stored bytes u64 | stored bytes ... |
 //
 // All integers and doubles are little-endian. Kinds: scene (once, first), inputs, hashes, end (once, last).
+// Inputs come as one hand's (72 bytes a tick, versions before 0.2) or as both hands' (144).
 
 namespace calot::simulation {
 
 namespace {
 
 constexpr char kMagic[8] = {'C', 'A', 'L', 'O', 'T', 'R', 'E', '1'};
-enum class Kind : std::uint32_t { scene = 1, inputs = 2, hashes = 3, end = 4 };
+enum class Kind : std::uint32_t { scene = 1, hook_inputs = 2, hashes = 3, end = 4, inputs = 5 };
 
 struct ChunkHeader {
     std::uint32_t kind = 0;
@@ -33,8 +34,8 @@ struct ChunkHeader {
 static_assert(sizeof(ChunkHeader) == 24);
 constexpr std::uint32_t kMaxChunkBytes = 64u << 20;
 
-/// One tick's input, as it lies in the file.
-struct StoredInput {
+/// One tick's input, as it lies in the file: the hook's hand and the foot, then the grasper's hand.
+struct StoredHook {
     double position_m[3];
     double orientation[4];  ///< w x y z
     double power_setting_W;
@@ -43,14 +44,32 @@ struct StoredInput {
     std::uint8_t wipe_tip;
     std::uint8_t reserved[5];
 };
-static_assert(sizeof(StoredInput) == 72);
+static_assert(sizeof(StoredHook) == 72);
+struct StoredGrasper {
+    double position_m[3];
+    double orientation[4];  ///< w x y z
+    double jaw;
+    std::uint8_t present;
+    std::uint8_t reserved[7];
+};
+static_assert(sizeof(StoredGrasper) == 72);
 
-StoredInput store(const tissue::Input& input) {
-    StoredInput stored{};
-    for (int c = 0; c < 3; ++c) stored.position_m[c] = input.hook.position_m[c];
-    const Quat& q = input.hook.orientation;
+template <class Stored>
+void store_pose(const tissue::Pose& pose, Stored& stored) {
+    for (int c = 0; c < 3; ++c) stored.position_m[c] = pose.position_m[c];
+    const Quat& q = pose.orientation;
     const double wxyz[4] = {q.w, q.x, q.y, q.z};
     std::memcpy(stored.orientation, wxyz, sizeof(wxyz));
+}
+template <class Stored>
+tissue::Pose load_pose(const Stored& stored) {
+    return {Vec3(stored.position_m[0], stored.position_m[1], stored.position_m[2]),
+            Quat(stored.orientation[0], stored.orientation[1], stored.orientation[2], stored.orientation[3])};
+}
+
+StoredHook store_hook(const tissue::Input& input) {
+    StoredHook stored{};
+    store_pose(input.hook, stored);
     stored.power_setting_W = input.power_setting_W;
     stored.pedal = input.pedal ? 1 : 0;
     stored.wipe_tip = input.wipe_tip ? 1 : 0;
@@ -58,11 +77,17 @@ StoredInput store(const tissue::Input& input) {
     return stored;
 }
 
-tissue::Input load(const StoredInput& stored) {
+StoredGrasper store_grasper(const tissue::Input& input) {
+    StoredGrasper stored{};
+    store_pose(input.grasper.pose, stored);
+    stored.jaw = input.grasper.jaw;
+    stored.present = input.grasper.present ? 1 : 0;
+    return stored;
+}
+
+tissue::Input load(const StoredHook& stored) {
     tissue::Input input;
-    for (int c = 0; c < 3; ++c) input.hook.position_m[c] = stored.position_m[c];
-    input.hook.orientation =
-        Quat(stored.orientation[0], stored.orientation[1], stored.orientation[2], stored.orientation[3]);
+    input.hook = load_pose(stored);
     input.power_setting_W = stored.power_setting_W;
     input.pedal = stored.pedal != 0;
     input.wipe_tip = stored.wipe_tip != 0;
@@ -139,13 +164,16 @@ void read_scene_chunk(const std::string& path, const std::string& raw, Recording
     for (std::uint32_t k = 0; k < names; ++k) recording.field_names.push_back(reader.text());
 }
 
-void read_inputs_chunk(const std::string& path, const std::string& raw, Recording& recording) {
+void read_inputs_chunk(const std::string& path, const std::string& raw, bool grasper, Recording& recording) {
     Reader reader(path, raw);
     while (reader.left() > 0) {
-        const auto stored = reader.value<StoredInput>();
+        const auto stored = reader.value<StoredHook>();
         if (stored.mode > static_cast<std::uint8_t>(tissue::GeneratorMode::coag))
             throw InputError(path, 0, 0, "the recording names a generator mode that this version does not know");
         recording.inputs.push_back(load(stored));
+        if (!grasper) continue;
+        const auto hand = reader.value<StoredGrasper>();
+        recording.inputs.back().grasper = {hand.present != 0, load_pose(hand), hand.jaw};
     }
 }
 
@@ -196,8 +224,9 @@ Recording read_recording(const std::string& path) {
             case Kind::scene:
                 read_scene_chunk(path, raw, recording);
                 break;
+            case Kind::hook_inputs:
             case Kind::inputs:
-                read_inputs_chunk(path, raw, recording);
+                read_inputs_chunk(path, raw, static_cast<Kind>(header.kind) == Kind::inputs, recording);
                 break;
             case Kind::hashes:
                 read_hashes_chunk(path, raw, recording);
@@ -243,8 +272,10 @@ void RecordingWriter::flush() {
     if (!pending_.empty()) {
         std::string raw;
         for (const tissue::Input& input : pending_) {
-            const StoredInput stored = store(input);
-            append(raw, &stored, sizeof(stored));
+            const StoredHook hook = store_hook(input);
+            const StoredGrasper grasper = store_grasper(input);
+            append(raw, &hook, sizeof(hook));
+            append(raw, &grasper, sizeof(grasper));
         }
         pending_.clear();
         write_chunk(file_.get(), path_, Kind::inputs, raw);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "calot/base/vec.h"
+#include "calot/simulation/track.h"
 #include "calot/tissue/input.h"
 
 namespace calot::simulation {
@@ -24,25 +25,38 @@ struct Burst {
     bool wiped = false;  ///< the hook is wiped clean just before
 };
 
-/// Between keyframes the tip moves on a monotone cubic (Fritsch & Carlson 1980) per coordinate: smooth, never past a
-/// keyframe, at rest where two keyframes agree. Before the first and after the last it stays there.
+/// The grasper's tip, the roll about its shaft and how far its jaws are open at one moment.
+struct GrasperKeyframe {
+    double time_s = 0.0;
+    Vec3 tip_m{0.0};
+    double roll_rad = 0.0;
+    double jaw = 1.0;  ///< 0 closed ... 1 wide open
+};
+
+/// Between keyframes the tips move on monotone cubics (track.h); before the first and after the last they rest.
 class Script {
   public:
     Script() = default;
     /// Requires strictly increasing keyframe times, at least one keyframe, and bursts that do not overlap.
     Script(const Vec3& trocar_m, std::vector<Keyframe> keyframes, std::vector<Burst> bursts);
+    /// Brings a grasper into the field. Requires strictly increasing times; none: there is no grasper.
+    void set_grasper(const Vec3& trocar_m, std::vector<GrasperKeyframe> keyframes);
 
     tissue::Input at(double time_s) const;
 
     const Vec3& trocar_m() const { return trocar_m_; }
     const std::vector<Keyframe>& keyframes() const { return keyframes_; }
     const std::vector<Burst>& bursts() const { return bursts_; }
+    const Vec3& grasper_trocar_m() const { return grasper_trocar_m_; }
+    const std::vector<GrasperKeyframe>& grasper_keyframes() const { return grasper_keyframes_; }
 
   private:
-    Vec3 trocar_m_{0.0};
+    Vec3 trocar_m_{0.0}, grasper_trocar_m_{0.0};
     std::vector<Keyframe> keyframes_;
     std::vector<Burst> bursts_;
-    std::vector<glm::dvec4> slopes_;  ///< of (tip, roll) at the keyframes, per second
+    std::vector<GrasperKeyframe> grasper_keyframes_;
+    Track<4> hook_;     ///< tip, roll
+    Track<5> grasper_;  ///< tip, roll, jaw
 };
 
 }  // namespace calot::simulation

@@ -6,6 +6,7 @@
 
 #include "calot/anatomy/anatomy.h"
 #include "calot/effects/smoke.h"
+#include "calot/instruments/grasper.h"
 #include "calot/instruments/hook.h"
 #include "calot/simulation/script.h"
 #include "calot/tissue/model.h"
@@ -27,6 +28,8 @@ struct Setup {
     anatomy::Anatomy anatomy;
     tissue::Model model;
     instruments::HookShape hook;
+    instruments::GrasperShape grasper;
+    Vec3 grasper_trocar_m{0.0};  ///< where the left hand would enter, also when the script has no grasper
     effects::SmokeParameters smoke;
     CameraSetup camera;
     Script script;

@@ -37,8 +37,9 @@ tissue::State checked(const tissue::Model& model, tissue::State state) {
 }  // namespace
 
 Work::Work(const tissue::Model& model, const tissue::State& state, const instruments::HookShape& hook,
-           const effects::SmokeParameters& smoke)
+           const effects::SmokeParameters& smoke, const instruments::GrasperShape& grasper)
     : hook(hook),
+      grasper(grasper),
       deformation(deformation::make_work(model, state)),
       electric(electric::make_work(model)),
       thermal(thermal::make_work(model, state)),
@@ -55,12 +56,12 @@ Work::Work(const tissue::Model& model, const tissue::State& state, const instrum
 Simulation::Simulation(std::shared_ptr<const Setup> setup)
     : setup_(std::move(setup)),
       state_(make_initial_state(setup_->model)),
-      work_(setup_->model, state_, setup_->hook, setup_->smoke) {}
+      work_(setup_->model, state_, setup_->hook, setup_->smoke, setup_->grasper) {}
 
 Simulation::Simulation(std::shared_ptr<const Setup> setup, tissue::State state)
     : setup_(std::move(setup)),
       state_(checked(setup_->model, std::move(state))),
-      work_(setup_->model, state_, setup_->hook, setup_->smoke) {}
+      work_(setup_->model, state_, setup_->hook, setup_->smoke, setup_->grasper) {}
 
 bool Simulation::tick(const tissue::Input& input) {
     if (!state_.status.ok) return false;

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "calot/deformation/embedding.h"
+#include "calot/deformation/grasp.h"
 #include "calot/deformation/integrate.h"
 #include "calot/deformation/tear.h"
 #include "calot/deformation/topology.h"
@@ -43,6 +44,26 @@ void place_gas(const tissue::Model& model, const tissue::State& state, Work& wor
     deformation::embed_points(model, state, work.deformation, work.gas_rest_m, work.gas_owner, work.gas_world_m);
 }
 
+void place_instruments(const tissue::Model& model, const tissue::State& state, Work& work, const tissue::Input& input) {
+    instruments::place_hook(work.hook, input.hook, state.tick == 0 ? input.hook : state.hook, model.tick_s,
+                            work.exchange.capsules);
+    tissue::GrasperInput& grasper = work.exchange.grasper;
+    grasper = input.grasper;
+    grasper.jaw = deformation::stopped_jaw(grasper, state.grasper.held);
+    const tissue::GrasperInput before{state.grasper.present != 0, state.grasper.pose, state.grasper.jaw};
+    instruments::place_grasper(work.grasper, grasper, before, state.grasper.held > 0, model.tick_s,
+                               work.exchange.capsules);
+}
+
+void remember_instruments(tissue::State& state, const tissue::Exchange& exchange, const tissue::Input& input) {
+    state.hook = input.hook;
+    state.grasper.present = exchange.grasper.present ? 1 : 0;
+    state.grasper.pose = exchange.grasper.pose;
+    state.grasper.jaw = exchange.grasper.jaw;
+    state.hook_force_N = exchange.contact_force_N + exchange.organ_force_N;
+    state.grasper.force_N = exchange.grasper_contact_force_N + exchange.grasper_organ_force_N;
+}
+
 }  // namespace
 
 void step(const tissue::Model& model, tissue::State& state, Work& work, const tissue::Input& input) {
@@ -52,14 +73,15 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     exchange.changed_phyxels.clear();
     exchange.gas.clear();
 
-    instruments::place_hook(work.hook, input.hook, state.tick == 0 ? input.hook : state.hook, model.tick_s,
-                            exchange.capsules);
+    place_instruments(model, state, work, input);
     deformation::find_near(model, state, exchange, work.deformation, kReach_m);
     instruments::find_contacts(model, state, exchange);
+    deformation::update_grasp(model, state, exchange,
+                              {work.grasper.jaw_length_m, 0.5 * work.grasper.jaw_diameter_m, work.grasper.opening_rad});
     clock.lap(Stage::contact);
 
     deformation::integrate(model, state, exchange, work.deformation);
-    state.hook_force_N = exchange.contact_force_N + exchange.organ_force_N;
+    remember_instruments(state, exchange, input);
     clock.lap(Stage::deformation);
 
     electric::solve_potential(model, state, exchange, input, *work.electric);
@@ -84,7 +106,6 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     work.bleeding.step(model, state, exchange, input.hook, work.fluids);
     clock.lap(Stage::smoke);
 
-    state.hook = input.hook;
     ++state.tick;
 }
 

@@ -9,6 +9,7 @@
 #include "calot/effects/bleeding.h"
 #include "calot/effects/smoke.h"
 #include "calot/electric/solve.h"
+#include "calot/instruments/grasper.h"
 #include "calot/instruments/hook.h"
 #include "calot/surface/surface.h"
 #include "calot/thermal/heat.h"
@@ -27,6 +28,7 @@ inline constexpr std::array<const char*, kStages> kStageNames{"contact", "deform
 /// Scratch of all rooms, with what they exchange and how long the stages of the last tick took.
 struct Work {
     instruments::HookShape hook;
+    instruments::GrasperShape grasper;
     tissue::Exchange exchange;
     deformation::Work deformation;
     electric::WorkPtr electric;
@@ -40,7 +42,7 @@ struct Work {
     std::array<float, kStages> stage_us{};  ///< wall time of the last tick's stages
 
     Work(const tissue::Model& model, const tissue::State& state, const instruments::HookShape& hook,
-         const effects::SmokeParameters& smoke);
+         const effects::SmokeParameters& smoke, const instruments::GrasperShape& grasper = {});
 };
 
 /// Advances the state by Model::tick_s. Does not throw, allocate, log or lock.

@@ -8,9 +8,13 @@
 
 #include "calot/base/array.h"
 #include "calot/base/vec.h"
+#include "calot/tissue/input.h"
 #include "calot/tissue/model.h"
 
 namespace calot::tissue {
+
+enum class Instrument : std::uint8_t { hook, grasper };
+inline constexpr int kInstruments = 2;
 
 /// A rounded cylinder in world space, a piece of an instrument.
 struct Capsule {
@@ -20,6 +24,8 @@ struct Capsule {
     bool bare = false;  ///< metal without insulation: carries current, gets hot
     Vec3 velocity_a_m_per_s{0.0};
     Vec3 velocity_b_m_per_s{0.0};
+    Instrument instrument = Instrument::hook;
+    bool solid = true;  ///< collides; jaws that hold do not, what they hold follows them anyway
 };
 
 /// A surface hexel close to an instrument, with its place in world space.
@@ -38,6 +44,7 @@ struct Contact {
     Vec3f normal{0.0f};                 ///< unit, out of the instrument
     float gap_m = 0.0f;                 ///< at the start of the tick, negative = penetration
     Vec3f tool_velocity_m_per_s{0.0f};  ///< of the instrument's surface there
+    Instrument instrument = Instrument::hook;
 };
 
 /// Mass that left a hexel as steam or smoke during this tick.
@@ -68,19 +75,22 @@ struct JouleHeat {
 };
 
 struct Exchange {
-    // simulation/instruments -> all: the hook in world space, this tick
+    // simulation/instruments -> all: the instruments in world space, this tick: the hook's capsules, then the grasper's
     std::vector<Capsule> capsules;
+    GrasperInput grasper;  ///< of this tick, for what it holds
 
     // deformation (embedding) -> instruments, electric
     std::vector<NearHexel> near;
 
     // instruments -> deformation
     std::vector<Contact> contacts;
-    // deformation -> simulation: force of the tissue on the hook [N] and its moment about the hook's position [N m],
-    // mean over substeps
+    // deformation -> simulation: force of the tissue on the hook, mean over substeps
     Vec3 contact_force_N{0.0};
-    // instruments -> simulation: force of rigid organs on the hook [N]
+    // instruments -> simulation: force of rigid organs on the hook
     Vec3 organ_force_N{0.0};
+    // the same two, on the grasper; the first with what it holds
+    Vec3 grasper_contact_force_N{0.0};
+    Vec3 grasper_organ_force_N{0.0};
 
     // electric -> thermal
     JouleHeat joule;

@@ -16,8 +16,17 @@ struct Pose {
     Quat orientation{1.0, 0.0, 0.0, 0.0};
 };
 
+/// The left hand's grasper. In its frame the shaft runs along -z as the hook's does, the jaws open along +x and -x, and
+/// the reference point lies between the tips of the closed jaws.
+struct GrasperInput {
+    bool present = false;  ///< in the field at all
+    Pose pose;
+    double jaw = 1.0;  ///< 0 closed ... 1 wide open
+};
+
 struct Input {
     Pose hook;
+    GrasperInput grasper;
     bool pedal = false;
     GeneratorMode mode = GeneratorMode::cut;
     double power_setting_W = 0.0;

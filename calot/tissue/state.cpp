@@ -83,6 +83,8 @@ std::vector<Field> fields(State& s) {
     all.push_back(scalar_field("links_severed", s.links_severed));
     all.push_back(scalar_field("hook_force", s.hook_force_N));
     all.push_back(scalar_field("hook_pose", s.hook));
+    all.push_back(scalar_field("grasper", s.grasper));
+    all.push_back(scalar_field("contact", s.contact));
     return all;
 }
 

@@ -15,9 +15,8 @@ namespace calot::tissue {
 
 /// The nine positive directions of the 18 links (faces, then edges). The link between cells c and c + d is bit
 /// index(c) of State::links[direction]; the negative nine are the same bits seen from the other end.
-inline constexpr std::array<Int3, 9> kLinkDirections{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1},
-                                                      {1, 1, 0}, {1, -1, 0}, {1, 0, 1},
-                                                      {1, 0, -1}, {0, 1, 1}, {0, 1, -1}}};
+inline constexpr std::array<Int3, 9> kLinkDirections{
+    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}}};
 inline constexpr int kFaceDirections = 3;  ///< the first three are faces, the other six edges
 
 /// Where the energy went since the start [J].
@@ -41,22 +40,45 @@ struct EnergyBudget {
 struct TipState {
     double temperature_K = 310.15;  ///< of the wire
     double char_kg = 0.0;           ///< burnt tissue that sticks to it
-    double heat_W = 0.0;            ///< net, from tissue into the wire during the last heat step; negative: it heats tissue
-    double lost_J = 0.0;            ///< since the start: from the wire to gas and up the shaft
+    double heat_W = 0.0;  ///< net, from tissue into the wire during the last heat step; negative: it heats tissue
+    double lost_J = 0.0;  ///< since the start: from the wire to gas and up the shaft
 };
 
 /// What the generator and the hook are doing.
 struct GeneratorState {
-    double voltage_V = 0.0;     ///< RMS
-    double current_A = 0.0;     ///< RMS
-    double power_W = 0.0;       ///< into tissue
-    double impedance_Ohm = 0.0; ///< 0 = open circuit
+    double voltage_V = 0.0;      ///< RMS
+    double current_A = 0.0;      ///< RMS
+    double power_W = 0.0;        ///< into tissue
+    double impedance_Ohm = 0.0;  ///< 0 = open circuit
 };
+
+/// The grasper, and what it holds: material points of hexels that follow places between its jaws.
+inline constexpr int kMostGrasped = 16;
+struct GrasperState {
+    std::int64_t present = 0;  ///< 1 = in the field in the last tick
+    Pose pose;                 ///< of the last tick
+    double jaw = 1.0;          ///< of the last tick: it takes hold when it closes, and lets go when it opens
+    Vec3 force_N{0.0};         ///< reaction of tissue and organs on it, mean over the tick
+    std::int64_t held = 0;     ///< points that it holds
+    std::array<std::int64_t, kMostGrasped> hexel{};  ///< cell of each, ascending
+    std::array<Vec3f, kMostGrasped> place_m{};       ///< where it is held, in the grasper's frame
+};
+static_assert(sizeof(GrasperState) == 8 + sizeof(Pose) + 8 + sizeof(Vec3) + 8 + kMostGrasped * (8 + sizeof(Vec3f)),
+              "hashed as bytes: no padding");
+
+/// Impulses at the points where instruments touched tissue in the last substep: where the next tick's solve starts.
+inline constexpr int kMostContactPoints = 32;
+struct ContactMemory {
+    std::int64_t count = 0;
+    std::array<std::int64_t, kMostContactPoints> hexel{};  ///< cell of each; a wedged hexel stands there twice
+    std::array<Vec3f, kMostContactPoints> impulse_Ns{};    ///< on the tissue
+};
+static_assert(sizeof(ContactMemory) == 8 + kMostContactPoints * (8 + sizeof(Vec3f)), "hashed as bytes: no padding");
 
 /// Numerical trouble stops a run in order.
 struct Status {
     bool ok = true;
-    const char* field = ""; ///< which
+    const char* field = "";  ///< which
     std::int64_t cell = -1;  ///< where
     std::int64_t tick = -1;  ///< when
 };
@@ -65,31 +87,33 @@ struct State {
     std::int64_t tick = 0;
 
     // --- Phyxels [phyxels.cells], written by deformation
-    std::array<Array<float>, 3> displacement_m;      ///< u
+    std::array<Array<float>, 3> displacement_m;  ///< u
     std::array<Array<float>, 3> velocity_m_per_s;
-    std::array<BitArray, 9> links;                   ///< live links; see kLinkDirections
-    BitArray phyxel_present;                         ///< has a main component and is simulated (ghosts not included)
+    std::array<BitArray, 9> links;  ///< live links; see kLinkDirections
+    BitArray phyxel_present;        ///< has a main component and is simulated (ghosts not included)
 
     // --- Hexels [hexels.cells], written by thermal (and by deformation when crumbs fall)
     BitArray hexel_present;
-    Array<float> enthalpy_J_per_m3;                  ///< H, counted from body temperature
-    Array<float> water_kg_per_m3;                    ///< water left
-    Array<float> peak_temperature_K;                 ///< hottest so far: drives blanching, browning, char
-    Array<float> damage;                             ///< Omega, Arrhenius integral; saturates at 1e6
+    Array<float> enthalpy_J_per_m3;   ///< H, counted from body temperature
+    Array<float> water_kg_per_m3;     ///< water left
+    Array<float> peak_temperature_K;  ///< hottest so far: drives blanching, browning, char
+    Array<float> damage;              ///< Omega, Arrhenius integral; saturates at 1e6
 
     // --- Electric field, written by electric: warm start of the next solve
-    Int3 field_low{0};                               ///< hexel coordinates of the window's low corner
-    Array<float> potential;                          ///< [window_cells^3] in units of the electrode's voltage, axes ordered as
-                                                     ///< in Model::hexels (its fastest axis fastest)
+    Int3 field_low{0};       ///< hexel coordinates of the window's low corner
+    Array<float> potential;  ///< [window_cells^3] in units of the electrode's voltage, axes ordered as
+                             ///< in Model::hexels (its fastest axis fastest)
 
     GeneratorState generator;
-    TipState tip;                                    ///< written by thermal
+    TipState tip;  ///< written by thermal
     EnergyBudget energy_J;
-    std::int64_t hexels_burnt = 0;                   ///< gasified
-    std::int64_t hexels_fallen = 0;                  ///< in crumbs that came loose
+    std::int64_t hexels_burnt = 0;   ///< gasified
+    std::int64_t hexels_fallen = 0;  ///< in crumbs that came loose
     std::int64_t links_severed = 0;
-    Vec3 hook_force_N{0.0};                          ///< reaction of tissue and organs on the hook, mean over the tick
-    Pose hook;                                       ///< of the last tick: its change is the instrument's velocity
+    Vec3 hook_force_N{0.0};  ///< reaction of tissue and organs on the hook, mean over the tick
+    Pose hook;               ///< of the last tick: its change is the instrument's velocity
+    GrasperState grasper;
+    ContactMemory contact;
     Status status;
 
     /// A fresh state: undeformed, at body temperature, all links alive.

@@ -35,6 +35,7 @@ class RecordingFile : public ::testing::Test {
             input.pedal = k % 3 == 0;
             input.mode = tissue::GeneratorMode::blend;
             input.power_setting_W = k;
+            input.grasper = {k % 2 == 0, {Vec3(-k, 0.5 * k, 7.0), Quat(0.5, 0.5, 0.5, -0.5)}, 1.0 / (k + 1)};
             ++state.tick;
             writer.add(input, state);
         }
@@ -61,6 +62,11 @@ TEST_F(RecordingFile, ReadsBackWhatWasWritten) {
     EXPECT_FALSE(recording.inputs[79].pedal);
     EXPECT_EQ(recording.inputs[79].mode, tissue::GeneratorMode::blend);
     EXPECT_EQ(recording.inputs[79].power_setting_W, 79.0);
+    EXPECT_FALSE(recording.inputs[77].grasper.present);
+    EXPECT_TRUE(recording.inputs[78].grasper.present);
+    EXPECT_EQ(recording.inputs[78].grasper.pose.position_m, Vec3(-78, 39, 7));
+    EXPECT_EQ(recording.inputs[78].grasper.pose.orientation, Quat(0.5, 0.5, 0.5, -0.5));
+    EXPECT_EQ(recording.inputs[78].grasper.jaw, 1.0 / 79);
     ASSERT_EQ(recording.hashes.size(), 3u);
     EXPECT_EQ(recording.hashes[0].tick, 1000);
     EXPECT_EQ(recording.hashes[2].tick, 2500);

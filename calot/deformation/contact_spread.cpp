@@ -1,0 +1,81 @@
+#include "calot/deformation/contact_spread.h"
+
+#include "calot/deformation/carriers.h"
+#include "calot/deformation/links.h"
+#include "calot/deformation/occupancy.h"
+
+namespace calot::deformation {
+
+namespace {
+
+/// Link weights of three neighbours in a row of x, where the bits of a link word say that they live; a fourth lane is
+/// 0. The row beside the carrier has edges, faces, edges (1 8 1), the carrier's own two faces (8 . 8), a diagonal one a
+/// single edge (. 1 .).
+struct RowWeights {
+    std::array<std::array<std::array<float, 4>, 8>, 3> of;  ///< [|dy| + |dz|][bits]
+    RowWeights() : of{} {
+        constexpr float kFace = static_cast<float>(kFaceWeight), kEdge = static_cast<float>(kEdgeWeight);
+        constexpr float kWeight[3][3] = {{kFace, 0.0f, kFace}, {kEdge, kFace, kEdge}, {0.0f, kEdge, 0.0f}};
+        for (std::size_t kind = 0; kind < 3; ++kind)
+            for (std::size_t bits = 0; bits < 8; ++bits)
+                for (std::size_t x = 0; x < 3; ++x) of[kind][bits][x] = (bits >> x) & 1u ? kWeight[kind][x] : 0.0f;
+    }
+};
+
+Mat3f moment_inverse(const Work& work, std::size_t i) {
+    std::array<float, 6> a;
+    for (std::size_t k = 0; k < a.size(); ++k) a[k] = work.moment_inverse[k][i];
+    return Mat3f(a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5]);
+}
+
+/// Adds one carrier j: phi_j (u_j + G_j (X - X_j)), G_j (X - X_j) = sum_l w u_jl (X_jl . A_j^-1 (X - X_j)).
+/// `lever` = phi_j s A_j^-1 (X - X_j), `at` the carrier's place in the local cells.
+void add_carrier(std::uint32_t links, const Vec3f& lever, float phi, float* at) {
+    static const RowWeights weights;
+    constexpr std::array<float, 4> kStep{-1.0f, 0.0f, 1.0f, 0.0f};
+    std::array<float, 4> total{};
+    for (int z = -1; z <= 1; ++z)
+        for (int y = -1; y <= 1; ++y, links >>= 3) {
+            const std::uint32_t bits = links & 7u;
+            if (bits == 0) continue;
+            const auto kind = static_cast<std::size_t>((y & 1) + (z & 1));
+            const std::array<float, 4>& w = weights.of[kind][bits];
+            const float across = lever.y * static_cast<float>(y) + lever.z * static_cast<float>(z);
+            float* row = at + 8 * y + 40 * z - 1;
+            for (std::size_t x = 0; x < 4; ++x) {
+                const float share = w[x] * (across + lever.x * kStep[x]);
+                row[x] += share;
+                total[x] += share;
+            }
+        }
+    *at += phi - ((total[0] + total[1]) + total[2]);
+}
+
+}  // namespace
+
+void local_shares(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t hexel,
+                  LocalShares& out) {
+    const int m = model.hexels_per_edge;
+    const Int3 at = model.hexels.coordinates(hexel), local = at % m, cell = at / m;
+    out.owner = model.phyxels.index(cell);
+    out.share.fill(0.0f);
+    const Carriers carriers = find_carriers(model, state, work, out.owner);
+    if (carriers.count == 0) return;
+    const float* table = work.hexel_weight.data() + kNeighbourhood * (local.x + m * (local.y + m * local.z));
+    std::array<float, kNeighbourhood> phi;
+    float sum = 0.0f;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) sum += phi[n] = table[carriers.cell[n]];
+    const auto spacing = static_cast<float>(model.phyxels.spacing_m);
+    const Vec3f r = Vec3f(model.hexels.centre_m(at) - model.phyxels.centre_m(cell));
+    for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) {
+        if (phi[n] == 0.0f) continue;
+        const Int3 step = neighbour_links()[static_cast<std::size_t>(carriers.cell[n])].step;
+        const auto carrier = static_cast<std::size_t>(carriers.phyxel[n]);
+        const float share = phi[n] / sum;
+        const Vec3f lever = (share * spacing) * (moment_inverse(work, carrier) * (r - spacing * Vec3f(step)));
+        add_carrier(work.link_word[carrier], lever, share,
+                    out.share.data() + (step.x + 2) + 8 * (step.y + 2) + 40 * (step.z + 2));
+    }
+}
+
+}  // namespace calot::deformation
