@@ -51,6 +51,7 @@ struct ScriptGrasperKey {
 
 struct ScriptBurst {
     simulation::Burst burst;
+    std::string preset = "none";  ///< a GeneratorPreset that gave mode and power
     Place place;
 };
 
@@ -108,6 +109,7 @@ struct Scene {
     Anchor trocar;
     instruments::GrasperShape grasper;
     Anchor grasper_trocar;
+    Anchor return_electrode;
     Anchor camera_eye, camera_target;
     double field_of_view_deg = 60.0;
     Picture picture;

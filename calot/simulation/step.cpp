@@ -84,7 +84,7 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     remember_instruments(state, exchange, input);
     clock.lap(Stage::deformation);
 
-    electric::solve_potential(model, state, exchange, input, *work.electric);
+    electric::step_field(model, state, exchange, input, *work.electric);
     clock.lap(Stage::electric);
 
     if (input.wipe_tip) state.tip.char_kg = 0.0;
