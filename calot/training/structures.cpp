@@ -118,7 +118,7 @@ void Structure::heat(const tissue::Model& model, const tissue::JouleHeat& joule,
         const Int3 cell = model.hexels.coordinates(hexel), at = cell - joule.low;
         if (glm::any(glm::lessThan(at, Int3(0))) || glm::any(glm::greaterThanEqual(at, joule.size))) continue;
         const auto index = static_cast<std::size_t>(joule.index(cell));
-        const auto density = static_cast<double>(joule.density_W_per_m3[index]);
+        const double density = static_cast<double>(joule.scale) * static_cast<double>(joule.density[index]);
         power_W += density * model.hexel_volume_m3();
         most_A2_per_m4 = std::max(most_A2_per_m4, conductivity_S_per_m_ * density);
     }
