@@ -29,7 +29,7 @@ struct Field {
         input.power_setting_W = 40.0;
         exchange.near.reserve(64);
         touch(28);
-        electric::solve_potential(model, state, exchange, input, *work);
+        electric::solve_now(model, state, exchange, input, *work);
     }
     void touch(int low_x) {
         exchange.near.clear();
@@ -57,7 +57,7 @@ void solve(benchmark::State& run, const electric::Kernels& kernels, int threads)
     double iterations = 0.0;
     for (auto _ : run) {
         field.wander(refresh++);
-        electric::solve_potential(field.model, field.state, field.exchange, field.input, *field.work);
+        electric::solve_now(field.model, field.state, field.exchange, field.input, *field.work);
         iterations += field.work->iterations;
     }
     run.counters["iterations"] = iterations / refresh;
@@ -82,38 +82,57 @@ void electric_cold_solve(benchmark::State& run) {
     Field field(static_cast<int>(run.range(0)), electric::wide_kernels());
     for (auto _ : run) {
         std::fill(field.state.potential.begin(), field.state.potential.end(), 0.0f);
-        electric::solve_potential(field.model, field.state, field.exchange, field.input, *field.work);
+        electric::solve_now(field.model, field.state, field.exchange, field.input, *field.work);
     }
     run.counters["iterations"] = field.work->iterations;
 }
 BENCHMARK(electric_cold_solve)->Arg(48)->Unit(benchmark::kMicrosecond);
 
-void electric_begin(benchmark::State& run) {
+/// One part of a frame's solve, by the tick in which it is done.
+void electric_part(benchmark::State& run) {
     const ThreadLimit limit(1);
     Field field(48, electric::wide_kernels());
-    for (auto _ : run) electric::begin_field(field.model, field.state, field.exchange, *field.work);
-}
-void electric_iteration(benchmark::State& run) {
-    const ThreadLimit limit(1);
-    Field field(48, electric::wide_kernels());
-    int count = 0;
+    electric::Work& work = *field.work;
+    int frame = 0;
     for (auto _ : run) {
-        if (count++ % 8 == 0) {  // eight iterations of a cold solve, so that numbers stay ordinary
-            run.PauseTiming();
-            std::fill(field.state.potential.begin(), field.state.potential.end(), 0.0f);
-            electric::begin_field(field.model, field.state, field.exchange, *field.work);
-            run.ResumeTiming();
-        }
-        electric::iterate(field.work->grid, 1, 0.0);
+        run.PauseTiming();
+        field.wander(frame++);
+        field.state.tick = static_cast<std::int64_t>(field.model.frame_ticks) * frame;
+        auto tick = [&] {
+            electric::step_field(field.model, field.state, field.exchange, field.input, work);
+            ++field.state.tick;
+        };
+        for (int part = 0; part < run.range(0); ++part) tick();
+        run.ResumeTiming();
+        tick();
+        run.PauseTiming();
+        for (int part = static_cast<int>(run.range(0)) + 1; part < field.model.frame_ticks; ++part) tick();
+        run.ResumeTiming();
     }
 }
-void electric_finish(benchmark::State& run) {
+BENCHMARK(electric_part)->DenseRange(0, 7)->Unit(benchmark::kMicrosecond);
+
+/// A whole frame: its eighth is the cost of a tick.
+void electric_frame(benchmark::State& run, const electric::Kernels& kernels) {
     const ThreadLimit limit(1);
-    Field field(48, electric::wide_kernels());
-    for (auto _ : run) electric::finish_field(field.model, field.state, field.exchange, field.input, *field.work);
+    Field field(static_cast<int>(run.range(0)), kernels);
+    int frame = 0;
+    for (auto _ : run) {
+        field.wander(frame++);
+        for (int part = 0; part < field.model.frame_ticks; ++part) {
+            electric::step_field(field.model, field.state, field.exchange, field.input, *field.work);
+            ++field.state.tick;
+        }
+    }
+    run.counters["residual"] = field.state.field.residual;
 }
-BENCHMARK(electric_begin)->Unit(benchmark::kMicrosecond);
-BENCHMARK(electric_iteration)->Unit(benchmark::kMicrosecond);
-BENCHMARK(electric_finish)->Unit(benchmark::kMicrosecond);
+void electric_frame_wide(benchmark::State& run) {
+    electric_frame(run, electric::wide_kernels());
+}
+void electric_frame_scalar(benchmark::State& run) {
+    electric_frame(run, electric::reference_kernels());
+}
+BENCHMARK(electric_frame_wide)->Arg(48)->Arg(64)->Unit(benchmark::kMicrosecond);
+BENCHMARK(electric_frame_scalar)->Arg(48)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

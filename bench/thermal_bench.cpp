@@ -84,14 +84,15 @@ void heat_burn(benchmark::State& run) {
     tissue::JouleHeat& joule = body.exchange.joule;
     const Int3 middle = body.model.hexels.size / 2;
     joule.place(body.model.hexels, Int3(middle.x - 24, middle.y - 24, body.model.hexels.size.z - 28), Int3(48));
-    joule.density_W_per_m3.resize(48 * 48 * 48);
+    Array<float> density_W_per_m3(48 * 48 * 48);
     for (int z = 0; z < 48; ++z)
         for (int y = 0; y < 48; ++y)
             for (int x = 0; x < 48; ++x) {
                 const Vec3 d = Vec3(x, y, z) - 24.0;
-                joule.density_W_per_m3[static_cast<std::size_t>(joule.index(joule.low + Int3(x, y, z)))] =
+                density_W_per_m3[static_cast<std::size_t>(joule.index(joule.low + Int3(x, y, z)))] =
                     static_cast<float>(1e9 / std::pow(1.0 + 0.3 * glm::dot(d, d), 2.0));
             }
+    joule.density = {density_W_per_m3.data(), density_W_per_m3.size()};
     for (int k = 0; k < 100; ++k) body.step();
     for (auto _ : run) body.step();
     body.report(run);

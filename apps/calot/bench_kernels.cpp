@@ -159,8 +159,8 @@ struct FieldBody {
     /// All ticks of one refresh.
     void solve() {
         wander();
-        for (int k = 0; k < model.electric.refresh_ticks; ++k) {
-            electric::solve_potential(model, state, exchange, input, *work);
+        for (int k = 0; k < model.frame_ticks; ++k) {
+            electric::step_field(model, state, exchange, input, *work);
             ++state.tick;
         }
     }

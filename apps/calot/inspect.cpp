@@ -109,7 +109,7 @@ Json describe(const simulation::Setup& setup) {
     out["time_steps"] = {{"tick_s", model.tick_s},
                          {"deformation_s", model.tick_s / model.deformation.substeps},
                          {"deformation_substeps", model.deformation.substeps},
-                         {"electric_s", model.tick_s * model.electric.refresh_ticks},
+                         {"electric_s", model.tick_s * model.frame_ticks},
                          {"thermal_s", model.tick_s * model.thermal.refresh_ticks}};
     out["lattice_cells"] = {{"hexels", model.hexels.cells}, {"phyxels", model.phyxels.cells}};
     const MemoryUse memory = memory_use(setup, state);

@@ -223,6 +223,19 @@ std::string energy(const RunRecord& r) {
                      "J");
 }
 
+/// Where the current went: what was not meant for it is what injures.
+std::string current(const RunRecord& r) {
+    std::string out =
+        "<h2>Where the current went</h2>\n<table><tr><th>Tissue</th><th>heat by current</th><th>highest current "
+        "density</th></tr>\n";
+    for (const Conductor& conductor : r.conductors)
+        out += fmt::format("<tr><td>{}</td><td>{:.3g} J</td><td>{:.3g} mA/mm²</td></tr>\n", escaped(conductor.name),
+                           r.last.stray.energy_J[conductor.material],
+                           r.last.stray.highest_density_A_per_m2[conductor.material] * 1e-3);
+    return out + fmt::format("</table>\n<p>Voltage times current is heat and outflow to {:.1e} of it.</p>\n",
+                             r.last.field.imbalance);
+}
+
 /// "duct_length_mm" 28.69 -> "duct length", "28.7 mm"
 std::string fact_row(std::string name, double value) {
     static const std::map<std::string, std::string> units{{"_mm", "mm"}, {"_deg", "°"}, {"_ml", "ml"}};
@@ -308,6 +321,7 @@ std::string report_html(const RunRecord& record, const RunPlan& plan, const std:
     out += plots(record);
     out += activations(record);
     out += energy(record);
+    out += current(record);
     out += details(record, plan);
     out += files(record);
     out += fmt::format("<footer>Calot {} · scene “{}”, seed {} · {} ticks</footer>\n</main></body></html>\n",

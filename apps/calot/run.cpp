@@ -122,7 +122,8 @@ RunRecord perform(const RunPlan& plan) {
     std::optional<Outputs> outputs;
     if (!plan.output.directory.empty()) outputs.emplace(plan, run, duration_s);
     try {
-        Timeline timeline(outputs ? outputs->directory().path("timeline.csv") : "");
+        record.conductors = conductors(run.model());
+        Timeline timeline(outputs ? outputs->directory().path("timeline.csv") : "", record.conductors);
         Progress progress(plan.output.progress, duration_s);
         tissue::Input input = plan.input(0, 0.0);
         for (std::int64_t tick = 0; tick < plan.ticks && !record.interrupted && !record.stopped_by_observer; ++tick) {

@@ -42,6 +42,7 @@ struct RunRecord {
     Quantiles force_N;  ///< of ticks with contact
     double energy_imbalance = 0.0;
     TimelineRow last;
+    std::vector<Conductor> conductors;
     std::size_t surface_vertices = 0, surface_triangles = 0;
     bool surface_closed = false;
     double surface_volume_m3 = 0.0;

@@ -64,6 +64,17 @@ std::string summary_json(const RunRecord& r) {
         {"surface", e.surface},     {"perfusion", e.perfusion},  {"outflow", e.outflow}, {"debris", e.debris},
         {"tip", e.tip + e.transit}};
     j["energy_imbalance"] = r.energy_imbalance;
+    // The account of the field itself: greatest share by which V I differs from heat and outflow, of all solves.
+    j["field"] = {{"status", r.last.field.imbalance < 5e-4 ? "ok" : "inexact"},
+                  {"power_imbalance", r.last.field.imbalance},
+                  {"last_residual", r.last.field.residual}};
+    Json current = Json::array();
+    for (const Conductor& conductor : r.conductors)
+        current.push_back(
+            {{"tissue", conductor.name},
+             {"energy_J", r.last.stray.energy_J[conductor.material]},
+             {"highest_current_density_A_per_m2", r.last.stray.highest_density_A_per_m2[conductor.material]}});
+    j["current"] = current;
     // Means are over the ticks in contact.
     j["force_N"] = {{"max", r.force_N.max()},
                     {"mean", r.force_N.count() > 0 ? r.force_N.sum() / static_cast<double>(r.force_N.count()) : 0.0}};
@@ -95,6 +106,9 @@ std::string summary_json(const RunRecord& r) {
         means[simulation::kStageNames[k]] =
             r.stages_us[k].sum() / static_cast<double>(std::max<std::int64_t>(1, r.ticks));
     j["stages_mean_us"] = means;
+    Json most;
+    for (int k = 0; k < simulation::kStages; ++k) most[simulation::kStageNames[k]] = r.stages_us[k].max();
+    j["stages_max_us"] = most;
     j["video"] = r.video;
     Json stills = Json::array();
     for (const Still& still : r.stills) stills.push_back(still.file);

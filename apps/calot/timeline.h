@@ -24,18 +24,28 @@ struct TimelineRow {
     double emitted_kg = 0.0;  ///< steam and smoke
     tissue::EnergyBudget energy_J;
     tissue::TipState tip;
+    tissue::FieldState field;
+    tissue::StrayCurrent stray;
     double stored_J = 0.0;
 };
 
 /// Hottest present hexel [K].
 double max_temperature_K(const simulation::Simulation& run);
 
+/// A tissue that current may run through: its index and name.
+struct Conductor {
+    std::size_t material = 0;
+    std::string name;
+};
+/// Tissues that the model holds hexels of, as far as State::stray counts them.
+std::vector<Conductor> conductors(const tissue::Model& model);
+
 TimelineRow make_row(const simulation::Simulation& run, const tissue::Input& input);
 
 class Timeline {
   public:
-    /// Empty path: rows are only kept for plots.
-    explicit Timeline(const std::string& path);
+    /// Empty path: rows are only kept for plots. A column with the power in each of `conductors`.
+    Timeline(const std::string& path, std::vector<Conductor> conductors);
     void add(const TimelineRow& row);
     /// Throws std::system_error when the disk is full.
     void flush();
@@ -45,6 +55,7 @@ class Timeline {
   private:
     [[noreturn]] void fail() const;
     std::string path_;
+    std::vector<Conductor> conductors_;
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
     std::vector<TimelineRow> kept_;
     std::size_t seen_ = 0, stride_ = 1;

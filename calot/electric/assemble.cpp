@@ -1,41 +1,163 @@
-// From the tissue to the matrix: conductivities, faces, electrode, outer faces.
+// From the tissue to the matrix: conductivities, faces, metal, outer faces.
 //
-//       electrode cell: phi = 1          gas: sigma = 0            outer face, distance r from the electrode:
-//            | g = 2 s1 s2 / (s1 + s2)   no face, no current       half a cell of sigma, then Robin 1/r
-//       ---[ e ]---[ cell ]---[ cell ]   [ gas ]                   g = sigma a / (1 + a/2), a = s n.r / r^2
+//       metal: phi = 1                  gas: sigma = 0            outer face, distance r from where current enters:
+//        ---+---  entry (contact.h)     no face, no current       half a cell of sigma, then Robin 1/r
+//       [ cell ]---[ cell ]---[ cell ]  [ gas ]                   g = sigma a / (1 + a/2), a = s n.r / r^2
+//                g = 2 s1 s2 / (s1 + s2)
 //
 // All g are in S/m: a conductance is g times the spacing s of hexels.
+//
+// Return electrode at a place: beyond the window the potential is taken as that of a source at the tip and a sink at
+// r2, which ends on a disc of radius a_p:  phi ~ 1/r1 - 1/r2 + 1/a_p - 1/D  with D their distance. Then
+//     a = s (n.r1/r1^3 - n.r2/r2^3) / (1/r1 - 1/r2 + 1/a_p - 1/D), at least 0
+// which is s n.r/r^2 for a return far away.
 
 #include <algorithm>
 #include <cmath>
 
 #include "calot/base/parallel.h"
+#include "calot/electric/conductivity.h"
 #include "calot/electric/work.h"
 
 namespace calot::electric {
 
 namespace {
 
-void gather_conductivity(const tissue::Model& model, const tissue::State& state, Work& work) {
+/// What an edge of the metal adds to a face, so that a disc has the resistance of its area at every size: with 0, 0.4,
+/// 0.6, 0.8 a disc of radius a acts like one that is 0.32, 0.12, 0.06, 0.01 hexels smaller.
+constexpr double kEdge = 0.8;
+
+/// Conductivities of the window, in cells that lie on the lattice; 0 in all others.
+void gather_conductivity(const tissue::Model& model, Work& work) {
     const Window& window = work.window;
     const Level& fine = work.grid.levels[0];
-    std::fill(work.sigma_S_per_m.begin(), work.sigma_S_per_m.end(), 0.0f);
-    const std::uint8_t *present = state.hexel_present.bytes(), *held = model.hexel_held.bytes();
-    parallel_for("electric.gather", window.begin.z, window.end.z, 4, [&](std::int64_t low, std::int64_t high) {
+    const Int3 size = window.end - window.begin;
+    const bool whole = size.x == window.cells && size.y == window.cells && size.z == window.cells;
+    if (!whole) std::fill(work.sigma_S_per_m.begin(), work.sigma_S_per_m.end(), 0.0f);
+    parallel_for("electric.gather", window.begin.z, window.end.z, 8, [&](std::int64_t low, std::int64_t high) {
         for (int c = static_cast<int>(low); c < high; ++c)
             for (int b = window.begin.y; b < window.end.y; ++b)
-                work.grid.kernels.gather(work.hexel_conductivity_S_per_m.data(), present, held,
-                                         model.hexels.index(window.to_hexel({window.begin.x, b, c})),
-                                         window.end.x - window.begin.x,
-                                         work.sigma_S_per_m.data() + fine.index(window.begin.x, b, c));
+                work.grid.kernels.gather(work.conductivity, model.hexels.index(window.to_hexel({window.begin.x, b, c})),
+                                         size.x, work.sigma_S_per_m.data() + fine.index(window.begin.x, b, c));
     });
+}
+
+/// Lists the groups that hold conducting cells. What is skipped must read as zero: groups that hold none any more are
+/// wiped.
+void list_groups(Work& work) {
+    Level& fine = work.grid.levels[0];
+    Krylov& krylov = work.grid.krylov;
+    fine.groups.clear();
+    for (std::size_t n = 0; n < work.alive.size(); ++n) {
+        const std::int64_t at = fine.first + static_cast<std::int64_t>(n) * kGroup;
+        const float* sigma = work.sigma_S_per_m.data() + at;
+        float largest = 0.0f;
+        for (std::int64_t k = 0; k < kGroup; ++k) largest = std::max(largest, sigma[k]);
+        if (largest > 0.0f) {
+            fine.groups.push_back({static_cast<std::int32_t>(at), 0, 0});
+            work.alive[n] = 1;
+        } else if (work.alive[n] != 0) {
+            work.alive[n] = 0;
+            for (auto* values : {&fine.g[0], &fine.g[1], &fine.g[2], &fine.ground, &fine.weight, &fine.right,
+                                 &fine.solution, &fine.scratch, &krylov.x, &krylov.p})
+                std::fill_n(values->begin() + at, kGroup, 0.0f);
+        }
+    }
+}
+
+/// Arcs keep dried tissue conducting in a hexel at the metal and in those behind its faces.
+void burn_through(const tissue::Model& model, std::int64_t hexel, const Int3& place, Work& work) {
+    const Level& fine = work.grid.levels[0];
+    const auto arc = static_cast<float>(model.electric.arc_conductivity_S_per_m);
+    auto burn = [&](const Int3& cell, std::int64_t there) {
+        if (!work.window.contains(cell)) return;
+        float& sigma = work.sigma_S_per_m[static_cast<std::size_t>(fine.index(cell.x, cell.y, cell.z))];
+        const float rest = work.hexel_conductivity_S_per_m[static_cast<std::size_t>(there)];
+        if (sigma > 0.0f) sigma = std::max(sigma, std::min(rest, arc));
+    };
+    burn(place, hexel);
+    for (int k = 0; k < 3; ++k)
+        for (const int side : {-1, 1}) {
+            Int3 cell = place;
+            cell[k] += side;
+            burn(cell, hexel + side * std::int64_t{model.hexels.stride[work.window.axis[k]]});
+        }
+}
+
+/// Which hexels current enters: Work::entries without their g, electrode_cells, near_of_entry, centre.
+void list_entries(const tissue::Model& model, const tissue::Exchange& exchange, const Reach& reach, Work& work) {
+    const Level& fine = work.grid.levels[0];
+    for (const std::int32_t cell : work.electrode_cells) work.entered.clear(cell);
+    work.entries.clear();
+    work.electrode_cells.clear();
+    work.near_of_entry.clear();
+    work.centre = Vec3(0.0);
+    for (std::size_t n = 0; n < exchange.near.size(); ++n) {
+        const tissue::NearHexel& near = exchange.near[n];
+        if (!reaches(reach, near) || work.entries.size() == work.entries.capacity()) continue;
+        const Int3 place = work.window.from_hexel(model.hexels.coordinates(near.hexel));
+        if (!work.window.contains(place)) continue;
+        const auto cell = static_cast<std::int32_t>(fine.index(place.x, place.y, place.z));
+        if (work.entered.test(cell) || !(work.sigma_S_per_m[static_cast<std::size_t>(cell)] > 0.0f)) continue;
+        if (reach.arcs) burn_through(model, near.hexel, place, work);
+        work.entered.set(cell);
+        work.electrode_cells.push_back(cell);
+        work.near_of_entry.push_back(static_cast<std::int32_t>(n));
+        work.entries.push_back({cell, 0.0f});
+        work.centre += Vec3(place);
+    }
+    if (!work.entries.empty()) work.centre /= static_cast<double>(work.entries.size());
+}
+
+/// Faces of an entry that look at gas, towards where the metal is, and more for every side on which the metal ends
+/// while the tissue's surface goes on: the current crowds there, as 1/sqrt of the distance from the edge.
+double face_weight(const Work& work, std::int32_t cell, const Vec3f& outward) {
+    const Level& fine = work.grid.levels[0];
+    const std::array<std::int64_t, 3> step{1, fine.row, fine.plane};
+    auto conducts = [&](std::int64_t at) { return work.sigma_S_per_m[static_cast<std::size_t>(at)] > 0.0f; };
+    double faces = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const int side : {-1, 1}) {
+            const std::int64_t out = side * step[axis];
+            if (conducts(cell + out) || static_cast<float>(side) * outward[static_cast<int>(axis)] < 0.0f) continue;
+            faces += 1.0;
+            for (std::size_t along = 0; along < 3; ++along)
+                for (const std::int64_t beside : {cell - step[along], cell + step[along]})
+                    if (along != axis && conducts(beside) && !conducts(beside + out) && !work.entered.test(beside))
+                        faces += kEdge;
+        }
+    return std::clamp(faces, 1.0, 3.0 + 4.0 * kEdge);
+}
+
+/// g of every entry: char, arc and half a cell in series.
+void connect_entries(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
+                     Work& work) {
+    const tissue::ElectricParameters& p = model.electric;
+    const double s = model.hexels.spacing_m;
+    const double char_m = state.tip.char_kg / (p.char_density_kg_per_m3 * p.bare_area_m2);
+    work.arcs = 0;
+    for (std::size_t n = 0; n < work.entries.size(); ++n) {
+        Entry& entry = work.entries[n];
+        const tissue::NearHexel& near = exchange.near[static_cast<std::size_t>(work.near_of_entry[n])];
+        Vec3f outward(0.0f);
+        for (int k = 0; k < 3; ++k) outward[k] = near.outward[work.window.axis[k]];
+        const double faces = face_weight(work, entry.cell, outward);
+        const double sigma = static_cast<double>(work.sigma_S_per_m[static_cast<std::size_t>(entry.cell)]);
+        double inverse = 1.0 / (2.0 * sigma * faces) + char_m / (p.char_conductivity_S_per_m * s * faces);
+        const double gap_m = static_cast<double>(near.bare_gap_m);
+        if (gap_m > p.contact_gap_m) {
+            inverse += s * (p.arc_resistance_Ohm + p.arc_resistance_Ohm_per_m * gap_m);
+            ++work.arcs;
+        }
+        entry.g = static_cast<float>(1.0 / inverse);
+    }
 }
 
 void make_faces(Work& work) {
     Level& fine = work.grid.levels[0];
-    parallel_for("electric.faces", 0, fine.group_capacity(), 2048, [&](std::int64_t b, std::int64_t e) {
-        work.grid.kernels.faces(fine, work.sigma_S_per_m.data(), b, e);
-    });
+    parallel_for(
+        "electric.faces", 0, static_cast<std::int64_t>(fine.groups.size()), 2048,
+        [&](std::int64_t b, std::int64_t e) { work.grid.kernels.faces(fine, work.sigma_S_per_m.data(), b, e); });
     // The last cell of a row is followed by the next row, the last row by the next plane.
     for (int c = 0; c < fine.rows; ++c) {
         for (int b = 0; b < fine.rows; ++b)
@@ -45,49 +167,42 @@ void make_faces(Work& work) {
     }
 }
 
-/// Centre of the electrode in window coordinates.
-Vec3 list_electrode(const tissue::Model& model, const tissue::Exchange& exchange, Work& work) {
-    const Level& fine = work.grid.levels[0];
-    for (const std::int32_t cell : work.electrode_cells) work.electrode.clear(cell);
-    work.electrode_cells.clear();
-    Vec3 centre(0.0);
-    for (const tissue::NearHexel& near : exchange.near) {
-        if (!touches(model.electric, near)) continue;
-        const Int3 cell = work.window.from_hexel(model.hexels.coordinates(near.hexel));
-        if (!work.window.contains(cell) || work.electrode_cells.size() == work.electrode_cells.capacity()) continue;
-        const std::int64_t index = fine.index(cell.x, cell.y, cell.z);
-        if (work.electrode.test(index) || !(work.sigma_S_per_m[static_cast<std::size_t>(index)] > 0.0f)) continue;
-        work.electrode.set(index);
-        work.electrode_cells.push_back(static_cast<std::int32_t>(index));
-        centre += Vec3(cell);
+/// Where the current comes from and goes to, in cells.
+struct Poles {
+    Vec3f source, sink;
+    float rest = 0.0f;  ///< 1/a_p - 1/D
+    bool placed = false;
+
+    /// a / (1 + a/2) of the sketch: of the conductance of half a cell and beyond, in units of sigma.
+    float share(const Vec3f& face, int axis, float side) const {
+        const Vec3f r1 = face - source;
+        const float d1 = glm::dot(r1, r1), through = std::max(0.0f, side * r1[axis]);
+        if (!placed) return through / (d1 + 0.5f * through);
+        const Vec3f r2 = face - sink;
+        const float d2 = std::max(glm::dot(r2, r2), 1.0f), i1 = 1.0f / std::sqrt(d1), i2 = 1.0f / std::sqrt(d2);
+        const float slope = std::max(0.0f, through * i1 / d1 - side * r2[axis] * i2 / d2), level = i1 - i2 + rest;
+        return level > 0.0f ? slope / (level + 0.5f * slope) : 0.0f;
     }
-    if (!work.electrode_cells.empty()) centre /= static_cast<double>(work.electrode_cells.size());
-    return centre;
+};
+
+Poles find_poles(const tissue::Model& model, const Work& work) {
+    const tissue::ElectricParameters& p = model.electric;
+    Poles poles;
+    poles.source = Vec3f(work.centre);
+    if (!p.return_placed) return poles;
+    const double s = model.hexels.spacing_m;
+    const Vec3 there = (p.return_m - model.hexels.centre_m(model.hexels.index(Int3(0)))) / s - Vec3(work.window.low);
+    for (int k = 0; k < 3; ++k) poles.sink[k] = static_cast<float>(there[work.window.axis[k]]);
+    const float distance = glm::length(poles.sink - poles.source);
+    poles.rest = static_cast<float>(s / p.return_radius_m) - 1.0f / std::max(distance, 1.0f);
+    poles.placed = true;
+    return poles;
 }
 
-/// Takes the electrode's cells out of the matrix: their faces become ground and right-hand side of their neighbours.
-void fix_electrode(Work& work) {
-    Level& fine = work.grid.levels[0];
-    work.electrode_faces.clear();
-    work.right.clear();
-    const std::array<std::int64_t, 3> step{1, fine.row, fine.plane};
-    for (const std::int32_t cell : work.electrode_cells)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            for (const std::int64_t direction : {-step[axis], step[axis]}) {
-                const std::int64_t other = cell + direction;
-                float& g = fine.g[axis][static_cast<std::size_t>(std::min<std::int64_t>(cell, other))];
-                const float value = g;
-                g = 0.0f;
-                if (value == 0.0f || work.electrode.test(other)) continue;
-                fine.ground[static_cast<std::size_t>(other)] += value;
-                work.right.push_back({static_cast<std::int32_t>(other), value});
-                work.electrode_faces.push_back({cell, static_cast<std::int32_t>(other), value});
-            }
-}
-
-void list_outer_faces(Work& work, const Vec3& centre) {
+void list_outer_faces(const tissue::Model& model, Work& work) {
     Level& fine = work.grid.levels[0];
     const Window& window = work.window;
+    const Poles poles = find_poles(model, work);
     work.outer_faces.clear();
     for (int axis = 0; axis < 3; ++axis)
         for (const int side : {-1, 1}) {
@@ -97,29 +212,41 @@ void list_outer_faces(Work& work, const Vec3& centre) {
             for (int c = low.z; c < high.z; ++c)
                 for (int b = low.y; b < high.y; ++b)
                     for (int a = low.x; a < high.x; ++a) {
-                        const std::int64_t cell = fine.index(a, b, c);
-                        const float sigma = work.sigma_S_per_m[static_cast<std::size_t>(cell)];
+                        const auto cell = static_cast<std::size_t>(fine.index(a, b, c));
+                        const float sigma = work.sigma_S_per_m[cell];
                         if (!(sigma > 0.0f)) continue;
-                        Vec3 r = Vec3(a, b, c) - centre;
-                        r[axis] += 0.5 * side;
-                        const double falloff = std::max(0.0, side * r[axis]) / glm::dot(r, r);
-                        const auto g = static_cast<float>(static_cast<double>(sigma) * falloff / (1.0 + 0.5 * falloff));
-                        work.outer_faces.push_back({static_cast<std::int32_t>(cell), g});
-                        if (!work.electrode.test(cell)) fine.ground[static_cast<std::size_t>(cell)] += g;
+                        Vec3f face(static_cast<float>(a), static_cast<float>(b), static_cast<float>(c));
+                        face[axis] += 0.5f * static_cast<float>(side);
+                        const float share = poles.share(face, axis, static_cast<float>(side));
+                        work.outer_faces.push_back({static_cast<std::int32_t>(cell), sigma * share, 0.5f * share});
+                        fine.ground[cell] += sigma * share;
                     }
         }
 }
 
 }  // namespace
 
-void assemble(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange, Work& work) {
-    gather_conductivity(model, state, work);
+void gather(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
+            const tissue::Input& input, Work& work) {
+    const Reach reach = find_reach(model, state, exchange, input);
+    work.window = place_window(model, exchange, reach, state.field_low);
+    look_at(model, state, work.hexel_conductivity_S_per_m, work.conductivity);
+    gather_conductivity(model, work);
+    list_groups(work);
+    list_entries(model, exchange, reach, work);
+    connect_entries(model, state, exchange, work);
+}
+
+void assemble(const tissue::Model& model, Work& work) {
     make_faces(work);
-    const Cells ground = work.grid.levels[0].ground;
-    std::fill(ground.begin(), ground.end(), 0.0f);
-    const Vec3 centre = list_electrode(model, exchange, work);
-    fix_electrode(work);
-    list_outer_faces(work, centre);
+    Level& fine = work.grid.levels[0];
+    work.right.clear();
+    for (const Entry& entry : work.entries) {
+        fine.ground[static_cast<std::size_t>(entry.cell)] += entry.g;
+        work.right.push_back({entry.cell, entry.g});
+    }
+    list_outer_faces(model, work);
+    build_finest(work.grid);
 }
 
 }  // namespace calot::electric

@@ -1,14 +1,21 @@
 #pragma once
-// Electric conductivity of tissue: the one place that says how well a hexel conducts.
+// How well each hexel conducts (docs/physics.md section 5).
 
 #include "calot/base/array.h"
-#include "calot/tissue/model.h"
+#include "calot/electric/kernels.h"
+#include "calot/tissue/state.h"
 
 namespace calot::electric {
 
-/// Conductivity of what fills each hexel's cell at body temperature [S/m], [hexels.cells]: the tissue's, or inside
-/// organs that hold tissue (Model::hexel_held) the organ's. 0 = gas. A hexel conducts while State::hexel_present has
-/// it; held cells always do, so that current leaves the tissue through the organs it grows on.
+/// [hexels.cells] at body temperature: tissue by its material; cells inside organs that hold tissue by the organ's, so
+/// that current leaves the tissue through them; elsewhere 0.
 Array<float> conductivity_at_rest_S_per_m(const tissue::Model& model);
+
+/// What depends on materials alone.
+Conductivity conductivity_of_materials(const tissue::Model& model);
+
+/// Points to the present tissue.
+void look_at(const tissue::Model& model, const tissue::State& state, const Array<float>& rest_S_per_m,
+             Conductivity& conductivity);
 
 }  // namespace calot::electric

@@ -1,5 +1,8 @@
 // The loops of kernels.h, a vector of neighbouring cells at a time. Neighbours are unaligned loads at constant offsets.
 
+#include <algorithm>
+#include <cstring>
+
 #include "calot/electric/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -30,15 +33,15 @@ HWY_INLINE std::int64_t lanes() {
     return static_cast<std::int64_t>(hn::Lanes(D()));
 }
 
-/// Adds the products of a vector's lanes, in double, to as many places.
-HWY_INLINE void add_products(V a, V b, double* place) {
+/// Adds a vector's lanes, in double, to as many places.
+HWY_INLINE void add_lanes(V values, double* place) {
 #if HWY_TARGET == HWY_SCALAR
-    *place += static_cast<double>(hn::GetLane(a)) * static_cast<double>(hn::GetLane(b));
+    *place += static_cast<double>(hn::GetLane(values));
 #else
     const hn::Half<D> half;
     const hn::Rebind<double, decltype(half)> wide;
-    const auto low = hn::Mul(hn::PromoteTo(wide, hn::LowerHalf(half, a)), hn::PromoteTo(wide, hn::LowerHalf(half, b)));
-    const auto high = hn::Mul(hn::PromoteTo(wide, hn::UpperHalf(half, a)), hn::PromoteTo(wide, hn::UpperHalf(half, b)));
+    const auto low = hn::PromoteTo(wide, hn::LowerHalf(half, values));
+    const auto high = hn::PromoteTo(wide, hn::UpperHalf(half, values));
     double* high_place = place + hn::Lanes(wide);
     hn::Store(hn::Add(hn::Load(wide, place), low), wide, place);
     hn::Store(hn::Add(hn::Load(wide, high_place), high), wide, high_place);
@@ -50,7 +53,7 @@ struct Sum {
     alignas(64) double place[kSums] = {};
 
     /// `cell` counts from the first cell of the range.
-    HWY_INLINE void add(std::int64_t cell, V a, V b) { add_products(a, b, place + cell % kSums); }
+    HWY_INLINE void add(std::int64_t cell, V products) { add_lanes(products, place + cell % kSums); }
     HWY_INLINE double total() const {
         double sum = 0.0;
         for (double value : place) sum += value;
@@ -82,29 +85,69 @@ struct Rows {
     }
 };
 
-void gather(const float* conductivity, const std::uint8_t* present, const std::uint8_t* held, std::int64_t first,
-            std::int64_t count, float* out) {
+/// One value per material, for the lanes of a vector.
+struct Lookup {
+    const tissue::MaterialIndex* material;
+    bool same;
+    HWY_INLINE explicit Lookup(const tissue::MaterialIndex* m) : material(m), same(true) {
+        for (std::int64_t k = 1; k < lanes(); ++k) same = same && m[k] == m[0];
+    }
+    HWY_INLINE V of(const Conductivity::PerMaterial<float>& table) const {
+        if (HWY_LIKELY(same)) return all(table[material[0]]);
+        alignas(64) float values[kGroup];
+        for (std::int64_t k = 0; k < lanes(); ++k) values[k] = table[material[k]];
+        return hn::Load(D(), values);
+    }
+};
+
+/// As it is in hexels that are not at rest.
+HWY_INLINE V warm_conductivity(const Conductivity& tissue, V rest, V enthalpy, std::int64_t hexel) {
+    const Lookup lookup(tissue.material + hexel);
+    const V water = load(tissue.water_kg_per_m3 + hexel);
+    const V capacity =
+        hn::Add(lookup.of(tissue.dry_capacity_J_per_m3K), hn::Mul(water, lookup.of(tissue.water_capacity_J_per_kgK)));
+    const V rise = hn::Min(hn::Mul(enthalpy, hn::Div(all(1.0f), capacity)), all(tissue.wet_limit_K));
+    const V wet = hn::Mul(rest, hn::Add(all(1.0f), hn::Mul(lookup.of(tissue.slope_per_K), rise)));
+    const V missing =
+        hn::Mul(hn::Sub(lookup.of(tissue.alive_water_kg_per_m3), water), lookup.of(tissue.per_water_m3_per_kg));
+    return hn::Sub(wet, hn::Mul(hn::Sub(wet, lookup.of(tissue.dry_S_per_m)), missing));
+}
+
+void gather(const Conductivity& tissue, std::int64_t first, std::int64_t count, float* out) {
     const D d;
     std::int64_t k = 0;
     for (; k + lanes() <= count; k += lanes()) {
-        const auto conducts = hn::Or(simd::mask_at(d, present, first + k), simd::mask_at(d, held, first + k));
-        store(hn::IfThenElseZero(conducts, load(conductivity + first + k)), out + k);
-    }
-    for (; k < count; ++k) {
         const std::int64_t hexel = first + k;
-        out[k] = ((present[hexel >> 3] | held[hexel >> 3]) >> (hexel & 7)) & 1 ? conductivity[hexel] : 0.0f;
+        const auto present = simd::mask_at(d, tissue.present, hexel);
+        const auto conducts = hn::Or(present, simd::mask_at(d, tissue.held, hexel));
+        if (hn::AllFalse(d, conducts)) {
+            store(hn::Zero(d), out + k);
+            continue;
+        }
+        V sigma = hn::IfThenElseZero(conducts, load(tissue.rest_S_per_m + hexel));
+        const V enthalpy = load(tissue.enthalpy_J_per_m3 + hexel);
+        const auto warm = hn::And(present, hn::Ne(enthalpy, hn::Zero(d)));
+        if (!hn::AllFalse(d, warm))
+            sigma = hn::IfThenElse(warm, warm_conductivity(tissue, sigma, enthalpy, hexel), sigma);
+        store(sigma, out + k);
     }
+    for (; k < count; ++k) out[k] = tissue.of(first + k);
 }
 
 void faces(Level& level, const float* sigma, std::int64_t begin, std::int64_t end) {
     float* const g[3] = {level.g[0].data(), level.g[1].data(), level.g[2].data()};
+    float* ground = level.ground.data();
     const std::int64_t step[3] = {1, level.row, level.plane};
-    for (std::int64_t i = level.first + begin * kGroup; i < level.first + end * kGroup; i += lanes()) {
-        const V here = load(sigma + i);
-        for (int axis = 0; axis < 3; ++axis) {
-            const V there = load(sigma + i + step[axis]);
-            const V twice = hn::Mul(hn::Mul(all(2.0f), here), there);
-            store(hn::Div(twice, hn::Max(hn::Add(here, there), all(1e-30f))), g[axis] + i);
+    for (std::int64_t n = begin; n < end; ++n) {
+        const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
+        for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
+            const V here = load(sigma + i);
+            for (int axis = 0; axis < 3; ++axis) {
+                const V there = load(sigma + i + step[axis]);
+                const V twice = hn::Mul(hn::Mul(all(2.0f), here), there);
+                store(hn::Div(twice, hn::Max(hn::Add(here, there), all(1e-30f))), g[axis] + i);
+            }
+            store(all(0.0f), ground + i);
         }
     }
 }
@@ -112,12 +155,15 @@ void faces(Level& level, const float* sigma, std::int64_t begin, std::int64_t en
 void weights(Level& level, std::int64_t begin, std::int64_t end) {
     const Rows rows(level);
     float* weight = level.weight.data();
-    for (std::int64_t i = level.first + begin * kGroup; i < level.first + end * kGroup; i += lanes()) {
-        V sum = hn::Add(load(rows.ground + i), hn::Add(load(rows.gx + i), load(rows.gx + i - 1)));
-        sum = hn::Add(sum, hn::Add(load(rows.gy + i), load(rows.gy + i - rows.row)));
-        sum = hn::Add(sum, hn::Add(load(rows.gz + i), load(rows.gz + i - rows.plane)));
-        const auto unknown = hn::Gt(sum, all(0.0f));
-        store(hn::IfThenElseZero(unknown, hn::Div(all(kDamping), sum)), weight + i);
+    for (std::int64_t n = begin; n < end; ++n) {
+        const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
+        for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
+            V sum = hn::Add(load(rows.ground + i), hn::Add(load(rows.gx + i), load(rows.gx + i - 1)));
+            sum = hn::Add(sum, hn::Add(load(rows.gy + i), load(rows.gy + i - rows.row)));
+            sum = hn::Add(sum, hn::Add(load(rows.gz + i), load(rows.gz + i - rows.plane)));
+            const auto unknown = hn::Gt(sum, all(0.0f));
+            store(hn::IfThenElseZero(unknown, hn::Div(all(kDamping), sum)), weight + i);
+        }
     }
 }
 
@@ -176,57 +222,92 @@ double apply(Level& level, const float* p, std::int64_t begin, std::int64_t end)
             const std::int64_t i = at + k;
             const V product = rows.times(p, i);
             store(product, out + i);
-            sum.add((n - begin) * kGroup + k, load(p + i), product);
+            sum.add((n - begin) * kGroup + k, hn::Mul(load(p + i), product));
         }
     }
     return sum.total();
 }
 
-double start(Level& level, const float* x, std::int64_t begin, std::int64_t end) {
-    const Rows rows(level);
-    float *right = level.right.data(), *solution = level.solution.data();
-    const float* weight = level.weight.data();
+double dot(const Level& level, const float* a, const float* b, std::int64_t begin, std::int64_t end) {
     Sum sum;
+    for (std::int64_t n = begin; n < end; ++n) {
+        const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
+        for (std::int64_t k = 0; k < kGroup; k += lanes())
+            sum.add((n - begin) * kGroup + k, hn::Mul(load(a + at + k), load(b + at + k)));
+    }
+    return sum.total();
+}
+
+/// The sums of a step, while it goes.
+struct NormSums {
+    Sum residual, weighted;
+    HWY_INLINE void add(std::int64_t cell, V rest, V weight) {
+        residual.add(cell, hn::Mul(rest, rest));
+        weighted.add(cell, hn::Mul(rest, hn::Mul(weight, rest)));
+    }
+    HWY_INLINE Norms total() const { return {residual.total(), weighted.total()}; }
+};
+
+Norms start(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::int64_t end) {
+    float *x = krylov.x.data(), *right = level.right.data();
+    const float *ax = level.scratch.data(), *weight = level.weight.data();
+    const V step = all(alpha);
+    NormSums sums;
     for (std::int64_t n = begin; n < end; ++n) {
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = at + k;
-            const V rest = hn::Sub(load(right + i), rows.times(x, i));
+            const V scaled = hn::Mul(step, load(x + i));
+            const V rest = hn::Sub(load(right + i), hn::Mul(step, load(ax + i)));
+            store(scaled, x + i);
             store(rest, right + i);
-            store(hn::Mul(load(weight + i), rest), solution + i);
-            sum.add((n - begin) * kGroup + k, rest, rest);
+            sums.add((n - begin) * kGroup + k, rest, load(weight + i));
         }
     }
-    return sum.total();
+    return sums.total();
 }
 
-double advance(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::int64_t end) {
-    float *x = krylov.x.data(), *right = level.right.data(), *solution = level.solution.data();
+Norms advance(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::int64_t end) {
+    float *x = krylov.x.data(), *right = level.right.data();
     const float *p = krylov.p.data(), *ap = level.scratch.data(), *weight = level.weight.data();
     const V step = all(alpha);
-    Sum sum;
+    NormSums sums;
     for (std::int64_t n = begin; n < end; ++n) {
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = at + k;
-            store(hn::Add(load(x + i), hn::Mul(step, load(p + i))), x + i);
+            const V moved = hn::Add(load(x + i), hn::Mul(step, load(p + i)));
             const V rest = hn::Sub(load(right + i), hn::Mul(step, load(ap + i)));
+            store(moved, x + i);
             store(rest, right + i);
-            store(hn::Mul(load(weight + i), rest), solution + i);
-            sum.add((n - begin) * kGroup + k, rest, rest);
+            sums.add((n - begin) * kGroup + k, rest, load(weight + i));
         }
     }
-    return sum.total();
+    return sums.total();
 }
 
-void direction(const Level& level, Krylov& krylov, float beta, std::int64_t begin, std::int64_t end) {
-    const float* z = level.scratch.data();
+/// Every lane of the lower half of a vector from p on, twice.
+HWY_INLINE V twice(const float* p) {
+    alignas(64) static constexpr std::int32_t kHalves[16] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7};
+    const D d;
+    return hn::TableLookupLanes(load(p), hn::SetTableIndices(d, kHalves));
+}
+
+void direction(const Level& level, Krylov& krylov, const float* coarse, float beta, std::int64_t begin,
+               std::int64_t end) {
+    const float *right = level.right.data(), *weight = level.weight.data();
     float* p = krylov.p.data();
     const V share = all(beta);
     for (std::int64_t n = begin; n < end; ++n) {
-        const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
-        for (std::int64_t i = at; i < at + kGroup; i += lanes())
-            store(hn::Add(load(z + i), hn::Mul(share, load(p + i))), p + i);
+        const Level::Group& group = level.groups[static_cast<std::size_t>(n)];
+        for (std::int64_t k = 0; k < kGroup; k += lanes()) {
+            const std::int64_t i = group.at + k;
+            const V w = load(weight + i);
+            const V own = hn::Mul(hn::Mul(all(kAdded), w), load(right + i));
+            const V z = hn::Add(own, hn::Mul(all(kCorrection), twice(coarse + group.parent + k / 2)));
+            const V next = hn::Add(z, hn::Mul(share, load(p + i)));
+            store(hn::IfThenElseZero(hn::Gt(w, all(0.0f)), next), p + i);
+        }
     }
 }
 
@@ -253,19 +334,19 @@ double smooth(Level& level, std::int64_t begin, std::int64_t end) {
             const V rest = hn::Sub(load(right + i), rows.times(solution, i));
             const V smoothed = hn::Add(load(solution + i), hn::Mul(load(weight + i), rest));
             store(smoothed, out + i);
-            sum.add((n - begin) * kGroup + k, load(right + i), smoothed);
+            sum.add((n - begin) * kGroup + k, hn::Mul(load(right + i), smoothed));
         }
     }
     return sum.total();
 }
 
-void restrict_residual(const Level& fine, Level& coarse, std::int64_t begin, std::int64_t end) {
+void restrict_residual(const Level& fine, const float* values, Level& coarse, std::int64_t begin, std::int64_t end) {
     const std::int64_t width = lanes();
     float *right = coarse.right.data(), *solution = coarse.solution.data();
     for (std::int64_t n = begin; n < end; ++n) {
         const Level::Group& group = coarse.groups[static_cast<std::size_t>(n)];
         for (std::int64_t k = 0; k < kGroup; k += width) {
-            const float* r = fine.scratch.data() + group.child + 2 * k;
+            const float* r = values + group.child + 2 * k;
             const V low = four(r, fine.row, fine.plane), high = four(r + width, fine.row, fine.plane);
             const std::int64_t i = group.at + k;
             const V weight = load(coarse.weight.data() + i);
@@ -277,58 +358,93 @@ void restrict_residual(const Level& fine, Level& coarse, std::int64_t begin, std
 }
 
 void correct(Level& fine, const Level& coarse, std::int64_t begin, std::int64_t end) {
-    alignas(64) static constexpr std::int32_t kHalves[16] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7};
-    const D d;
-    const auto halves = hn::SetTableIndices(d, kHalves);
     float* z = fine.solution.data();
     for (std::int64_t n = begin; n < end; ++n) {
         const Level::Group& group = fine.groups[static_cast<std::size_t>(n)];
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
-            const V parents = hn::TableLookupLanes(load(coarse.solution.data() + group.parent + k / 2), halves);
+            const V parents = twice(coarse.solution.data() + group.parent + k / 2);
             float* to = z + group.at + k;
             store(hn::Add(load(to), hn::Mul(all(kCorrection), parents)), to);
         }
     }
 }
 
-void heat(const Level& level, const float* sigma, const float* phi, float* out, std::int64_t begin, std::int64_t end) {
+void heat(const Level& level, const float* sigma, const float* phi, float factor, float* out, std::int64_t begin,
+          std::int64_t end) {
     const Rows rows(level);
-    for (std::int64_t i = level.first + begin * kGroup; i < level.first + end * kGroup; i += lanes()) {
-        const V conductivity = load(sigma + i), here = load(phi + i);
-        auto square = [&](const float* g, std::int64_t face, std::int64_t there) HWY_ATTR {
-            const V flow = hn::Mul(load(g + face), hn::Sub(here, load(phi + there)));
-            return hn::Mul(flow, flow);
-        };
-        V sum = hn::Add(square(rows.gx, i, i + 1), square(rows.gx, i - 1, i - 1));
-        sum = hn::Add(sum, hn::Add(square(rows.gy, i, i + rows.row), square(rows.gy, i - rows.row, i - rows.row)));
-        sum =
-            hn::Add(sum, hn::Add(square(rows.gz, i, i + rows.plane), square(rows.gz, i - rows.plane, i - rows.plane)));
-        const auto conducts = hn::Gt(conductivity, all(0.0f));
-        store(hn::IfThenElseZero(conducts, hn::Div(hn::Mul(all(0.5f), sum), conductivity)), out + i);
+    const V half = all(0.5f * factor);
+    for (std::int64_t n = begin; n < end; ++n) {
+        const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
+        for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
+            const V conductivity = load(sigma + i), here = load(phi + i);
+            auto square = [&](const float* g, std::int64_t face, std::int64_t there) HWY_ATTR {
+                const V flow = hn::Mul(load(g + face), hn::Sub(here, load(phi + there)));
+                return hn::Mul(flow, flow);
+            };
+            V sum = hn::Add(square(rows.gx, i, i + 1), square(rows.gx, i - 1, i - 1));
+            sum = hn::Add(sum, hn::Add(square(rows.gy, i, i + rows.row), square(rows.gy, i - rows.row, i - rows.row)));
+            sum = hn::Add(sum,
+                          hn::Add(square(rows.gz, i, i + rows.plane), square(rows.gz, i - rows.plane, i - rows.plane)));
+            const auto conducts = hn::Gt(conductivity, all(0.0f));
+            store(hn::IfThenElseZero(conducts, hn::Div(hn::Mul(half, sum), conductivity)), out + i);
+        }
     }
 }
 
-void split(float* heat, const std::uint8_t* present, std::int64_t first, std::int64_t count, HeatSums& sums) {
+/// Bits [first, first + 16).
+HWY_INLINE std::uint32_t sixteen_bits(const std::uint8_t* bits, std::int64_t first) {
+    const std::uint8_t* at = bits + (first >> 3);
+    const std::uint32_t three =
+        at[0] | static_cast<std::uint32_t>(at[1]) << 8 | static_cast<std::uint32_t>(at[2]) << 16;
+    return three >> (first & 7) & 0xffffu;
+}
+
+/// Adds 16 floats to 16 places.
+HWY_INLINE void add_group(const float* values, HeatSums::Places& places) {
     const hn::CappedTag<double, 8> wide;
     const hn::Rebind<float, decltype(wide)> narrow;
-    const auto width = static_cast<std::int64_t>(hn::Lanes(wide));
-    std::int64_t k = 0;
-    for (; k + width <= count; k += width) {
-        const auto all_heat = hn::LoadU(narrow, heat + k);
-        const auto mask = simd::mask_at(narrow, present, first + k);
-        const auto kept = hn::IfThenElseZero(mask, all_heat), rest = hn::IfThenZeroElse(mask, all_heat);
-        hn::StoreU(kept, narrow, heat + k);
-        double *kept_sum = sums.kept + k % kGroup, *rest_sum = sums.rest + k % kGroup;
-        hn::StoreU(hn::Add(hn::LoadU(wide, kept_sum), hn::PromoteTo(wide, kept)), wide, kept_sum);
-        hn::StoreU(hn::Add(hn::LoadU(wide, rest_sum), hn::PromoteTo(wide, rest)), wide, rest_sum);
-    }
-    for (; k < count; ++k) {
+    for (std::size_t k = 0; k < kGroup; k += hn::Lanes(wide))
+        hn::StoreU(hn::Add(hn::LoadU(wide, places.data() + k), hn::PromoteTo(wide, hn::LoadU(narrow, values + k))),
+                   wide, places.data() + k);
+}
+
+void split(const Conductivity& tissue, const float* heat, const float* sigma, float scale, std::int64_t first,
+           std::int64_t count, float* out, HeatSums& sums) {
+    auto one = [&](std::int64_t k) {
         const std::int64_t hexel = first + k;
-        const bool kept = (present[hexel >> 3] >> (hexel & 7)) & 1;
-        double* place = kept ? sums.kept : sums.rest;
-        place[k % kGroup] += static_cast<double>(heat[k]);
-        if (!kept) heat[k] = 0.0f;
+        const auto place = static_cast<std::size_t>(k % kGroup);
+        const bool kept = (tissue.present[hexel >> 3] >> (hexel & 7)) & 1;
+        out[k] = kept ? scale * heat[k] : 0.0f;
+        if (!kept) {
+            sums.rest[place] += static_cast<double>(heat[k]);
+            return;
+        }
+        const tissue::MaterialIndex m = tissue.material[hexel];
+        sums.kept[m][place] += static_cast<double>(heat[k]);
+        sums.greatest[m] = std::max(sums.greatest[m], heat[k] * sigma[k]);
+    };
+    std::int64_t low = 0;
+    for (; low + kGroup <= count; low += kGroup) {
+        const tissue::MaterialIndex* material = tissue.material + first + low;
+        const tissue::MaterialIndex m = material[0];
+        const std::uint32_t kept = sixteen_bits(tissue.present, first + low);
+        if (kept == 0) {
+            add_group(heat + low, sums.rest);
+            std::fill_n(out + low, kGroup, 0.0f);
+        } else if (kept == 0xffff && std::memcmp(material, material + 1, kGroup - 1) == 0) {
+            add_group(heat + low, sums.kept[m]);
+            V most = all(0.0f);
+            for (std::int64_t k = low; k < low + kGroup; k += lanes()) {
+                const V here = load(heat + k);
+                store(hn::Mul(all(scale), here), out + k);
+                most = hn::Max(most, hn::Mul(here, load(sigma + k)));
+            }
+            sums.greatest[m] = std::max(sums.greatest[m], hn::GetLane(hn::MaxOfLanes(D(), most)));
+        } else {
+            for (std::int64_t k = low; k < low + kGroup; ++k) one(k);
+        }
     }
+    for (; low < count; ++low) one(low);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -343,6 +459,7 @@ HWY_EXPORT(faces);
 HWY_EXPORT(weights);
 HWY_EXPORT(aggregate);
 HWY_EXPORT(apply);
+HWY_EXPORT(dot);
 HWY_EXPORT(start);
 HWY_EXPORT(advance);
 HWY_EXPORT(direction);
@@ -356,20 +473,11 @@ HWY_EXPORT(split);
 Kernels wide_kernels() {
     // Decide on the target first: what is taken below are then the functions themselves.
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    return {HWY_DYNAMIC_DISPATCH(gather),
-            HWY_DYNAMIC_DISPATCH(faces),
-            HWY_DYNAMIC_DISPATCH(weights),
-            HWY_DYNAMIC_DISPATCH(aggregate),
-            HWY_DYNAMIC_DISPATCH(apply),
-            HWY_DYNAMIC_DISPATCH(start),
-            HWY_DYNAMIC_DISPATCH(advance),
-            HWY_DYNAMIC_DISPATCH(direction),
-            HWY_DYNAMIC_DISPATCH(residual),
-            HWY_DYNAMIC_DISPATCH(smooth),
-            HWY_DYNAMIC_DISPATCH(restrict_residual),
-            HWY_DYNAMIC_DISPATCH(correct),
-            HWY_DYNAMIC_DISPATCH(heat),
-            HWY_DYNAMIC_DISPATCH(split)};
+    return {HWY_DYNAMIC_DISPATCH(gather),    HWY_DYNAMIC_DISPATCH(faces),   HWY_DYNAMIC_DISPATCH(weights),
+            HWY_DYNAMIC_DISPATCH(aggregate), HWY_DYNAMIC_DISPATCH(apply),   HWY_DYNAMIC_DISPATCH(dot),
+            HWY_DYNAMIC_DISPATCH(start),     HWY_DYNAMIC_DISPATCH(advance), HWY_DYNAMIC_DISPATCH(direction),
+            HWY_DYNAMIC_DISPATCH(residual),  HWY_DYNAMIC_DISPATCH(smooth),  HWY_DYNAMIC_DISPATCH(restrict_residual),
+            HWY_DYNAMIC_DISPATCH(correct),   HWY_DYNAMIC_DISPATCH(heat),    HWY_DYNAMIC_DISPATCH(split)};
 }
 
 }  // namespace calot::electric

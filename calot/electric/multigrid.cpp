@@ -17,9 +17,9 @@ std::int64_t size(const Level& level) {
     return static_cast<std::int64_t>(level.groups.size());
 }
 
-void restrict_to(const Kernels& kernels, const Level& fine, Level& coarse) {
+void restrict_to(const Kernels& kernels, const Level& fine, const Cells values, Level& coarse) {
     parallel_for("electric.restrict", 0, size(coarse), kChunk,
-                 [&](std::int64_t b, std::int64_t e) { kernels.restrict_residual(fine, coarse, b, e); });
+                 [&](std::int64_t b, std::int64_t e) { kernels.restrict_residual(fine, values.data(), coarse, b, e); });
 }
 void correct(const Kernels& kernels, Level& fine, const Level& coarse) {
     parallel_for("electric.correct", 0, size(fine), kChunk,
@@ -34,8 +34,15 @@ double smooth(const Kernels& kernels, Level& level) {
                         [&](std::int64_t b, std::int64_t e) { return kernels.smooth(level, b, e); });
 }
 
-/// Lists the groups that hold an unknown. Those that are skipped must read as zero, so the others' vectors are wiped.
-void list_groups(Level& level) {
+/// Lists all groups.
+void list_all(Level& level) {
+    level.groups.clear();
+    for (std::int64_t at = level.first; at < level.first + level.group_capacity() * kGroup; at += kGroup)
+        level.groups.push_back({static_cast<std::int32_t>(at), 0, 0});
+}
+
+/// Keeps the groups that hold an unknown. Those that are skipped must read as zero, so the others' vectors are wiped.
+void list_unknown(Level& level) {
     level.groups.clear();
     for (std::int64_t at = level.first; at < level.first + level.group_capacity() * kGroup; at += kGroup) {
         const float* weight = level.weight.data() + at;
@@ -58,10 +65,6 @@ void relate(Level& level, const Level* finer, const Level* coarser) {
         if (coarser != nullptr)
             group.parent = static_cast<std::int32_t>(coarser->index(cell.x / 2, cell.y / 2, cell.z / 2));
     }
-}
-
-void clear(Cells values) {
-    std::fill(values.begin(), values.end(), 0.0f);
 }
 
 }  // namespace
@@ -98,105 +101,157 @@ Multigrid make_multigrid(int cells, const Kernels& kernels) {
     Multigrid grid;
     grid.kernels = kernels;
     grid.levels.push_back(Level::make(cells));
-    while (grid.levels.back().cells > kCoarsest) grid.levels.push_back(Level::make(grid.levels.back().rows / 2));
+    do grid.levels.push_back(Level::make(grid.levels.back().rows / 2));
+    while (grid.levels.back().cells > kCoarsest);
     grid.krylov.storage.allocate(grid.levels[0].length, 8, {&grid.krylov.x, &grid.krylov.p});
+    grid.parts.resize(static_cast<std::size_t>(grid.levels[0].group_capacity() / kChunk + 1));
     return grid;
 }
 
-void build(Multigrid& grid) {
+void build_finest(Multigrid& grid) {
+    Level& fine = grid.levels[0];
+    parallel_for("electric.weights", 0, size(fine), kChunk,
+                 [&](std::int64_t b, std::int64_t e) { grid.kernels.weights(fine, b, e); });
+    relate(fine, nullptr, &grid.levels[1]);
+}
+
+void build_coarse(Multigrid& grid) {
     const Kernels& kernels = grid.kernels;
-    for (std::size_t l = 0; l < grid.levels.size(); ++l) {
+    for (std::size_t l = 1; l < grid.levels.size(); ++l) {
         Level& level = grid.levels[l];
-        if (l > 0)
-            parallel_for("electric.aggregate", 0, level.cells, 4, [&](std::int64_t low, std::int64_t high) {
-                for (std::int64_t c = low; c < high; ++c)
-                    kernels.aggregate(grid.levels[l - 1], level, static_cast<int>(c));
-            });
-        parallel_for("electric.weights", 0, level.group_capacity(), kChunk,
+        parallel_for("electric.aggregate", 0, level.cells, 4, [&](std::int64_t low, std::int64_t high) {
+            for (std::int64_t c = low; c < high; ++c) kernels.aggregate(grid.levels[l - 1], level, static_cast<int>(c));
+        });
+        list_all(level);
+        parallel_for("electric.weights", 0, size(level), kChunk,
                      [&](std::int64_t b, std::int64_t e) { kernels.weights(level, b, e); });
-        list_groups(level);
-    }
-    for (std::size_t l = 0; l < grid.levels.size(); ++l) {
-        Level& level = grid.levels[l];
-        relate(level, l > 0 ? &grid.levels[l - 1] : nullptr,
-               l + 1 < grid.levels.size() ? &grid.levels[l + 1] : nullptr);
+        list_unknown(level);
+        relate(level, &grid.levels[l - 1], l + 1 < grid.levels.size() ? &grid.levels[l + 1] : nullptr);
     }
 }
 
-double precondition(Multigrid& grid) {
+namespace {
+
+/// A loop over the groups of the finest level whose chunks add their norms in order.
+template <class Body>
+Norms sum_norms(const char* name, Multigrid& grid, const Body& body) {
+    const std::int64_t groups = size(grid.levels[0]);
+    parallel_for(name, 0, groups, kChunk, [&](std::int64_t b, std::int64_t e) {
+        grid.parts[static_cast<std::size_t>(b / kChunk)] = body(b, e);
+    });
+    Norms sum;
+    for (std::int64_t chunk = 0; chunk * kChunk < groups; ++chunk) {
+        const Norms& part = grid.parts[static_cast<std::size_t>(chunk)];
+        sum.residual += part.residual;
+        sum.weighted += part.weighted;
+    }
+    return sum;
+}
+
+double apply(Multigrid& grid, const Cells vector) {
+    Level& fine = grid.levels[0];
+    return parallel_sum("electric.apply", 0, size(fine), kChunk,
+                        [&](std::int64_t b, std::int64_t e) { return grid.kernels.apply(fine, vector.data(), b, e); });
+}
+
+/// From P^T r: levels[1].solution approximately its solution; returns their product.
+double coarse_cycle(Multigrid& grid) {
     const Kernels& kernels = grid.kernels;
     std::vector<Level>& levels = grid.levels;
-    for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
+    restrict_to(kernels, levels[0], levels[0].right, levels[1]);
+    for (std::size_t l = 1; l + 1 < levels.size(); ++l) {
         residual(kernels, levels[l]);
-        restrict_to(kernels, levels[l], levels[l + 1]);
+        restrict_to(kernels, levels[l], levels[l].scratch, levels[l + 1]);
     }
     double product = 0.0;
     for (int sweep = 0; sweep < kCoarsestSweeps; ++sweep) {
         product = smooth(kernels, levels.back());
         std::swap(levels.back().solution, levels.back().scratch);
     }
-    for (std::size_t l = levels.size() - 1; l-- > 0;) {
+    for (std::size_t l = levels.size() - 1; l-- > 1;) {
         correct(kernels, levels[l], levels[l + 1]);
         product = smooth(kernels, levels[l]);
-        if (l > 0) std::swap(levels[l].solution, levels[l].scratch);
+        std::swap(levels[l].solution, levels[l].scratch);
     }
     return product;
 }
 
-namespace {
-
-/// r = b - A x into `right`, with its norm and the first smoothing step.
-void start_from_x(Multigrid& grid, const std::vector<RightEntry>& right) {
-    Level& fine = grid.levels[0];
-    clear(fine.right);
-    for (const RightEntry& entry : right) fine.right[static_cast<std::size_t>(entry.cell)] += entry.value;
-    // |b|^2: several entries may share a cell, whose value is then their sum.
-    grid.right_norm2 = 0.0;
-    for (const RightEntry& entry : right)
-        grid.right_norm2 += static_cast<double>(entry.value) * fine.right[static_cast<std::size_t>(entry.cell)];
-    grid.residual_norm2 = parallel_sum("electric.start", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
-        return grid.kernels.start(fine, grid.krylov.x.data(), b, e);
+void direction(Multigrid& grid, double beta) {
+    const Level& fine = grid.levels[0];
+    parallel_for("electric.direction", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
+        grid.kernels.direction(fine, grid.krylov, grid.levels[1].solution.data(), static_cast<float>(beta), b, e);
     });
+}
+
+double along_right(const Multigrid& grid, const std::vector<RightEntry>& right) {
+    double sum = 0.0;
+    for (const RightEntry& entry : right)
+        sum +=
+            static_cast<double>(entry.value) * static_cast<double>(grid.krylov.x[static_cast<std::size_t>(entry.cell)]);
+    return sum;
 }
 
 }  // namespace
 
+double precondition(Multigrid& grid) {
+    const double coarse = coarse_cycle(grid);
+    direction(grid, 0.0);
+    return static_cast<double>(kAdded) * grid.norms.weighted + static_cast<double>(kCorrection) * coarse;
+}
+
 void begin(Multigrid& grid, const std::vector<RightEntry>& right) {
+    Level& fine = grid.levels[0];
     grid.iterations = 0;
     grid.rho = 0.0;
-    start_from_x(grid, right);
-    if (!(grid.residual_norm2 <= grid.right_norm2)) {
-        clear(grid.krylov.x);
-        start_from_x(grid, right);
-    }
+    const double curvature = apply(grid, grid.krylov.x), along = along_right(grid, right);
+    const double alpha = curvature > 0.0 && std::isfinite(curvature) ? along / curvature : 0.0;
+    for (const Level::Group& group : fine.groups) std::fill_n(fine.right.begin() + group.at, kGroup, 0.0f);
+    for (const RightEntry& entry : right) fine.right[static_cast<std::size_t>(entry.cell)] += entry.value;
+    // |b|^2: several entries may share a cell, whose value is then their sum.
+    grid.right_norm2 = 0.0;
+    for (const RightEntry& entry : right)
+        grid.right_norm2 +=
+            static_cast<double>(entry.value) * static_cast<double>(fine.right[static_cast<std::size_t>(entry.cell)]);
+    grid.norms = sum_norms("electric.start", grid, [&](std::int64_t b, std::int64_t e) {
+        return grid.kernels.start(fine, grid.krylov, static_cast<float>(alpha), b, e);
+    });
 }
 
 bool iterate(Multigrid& grid, int count, double relative_residual) {
     Level& fine = grid.levels[0];
-    const Kernels& kernels = grid.kernels;
     const double goal = relative_residual * relative_residual * grid.right_norm2;
-    for (int k = 0; k < count && grid.residual_norm2 > goal; ++k) {
-        const double rho = precondition(grid);
-        const double beta = grid.rho > 0.0 ? rho / grid.rho : 0.0;
+    for (int k = 0; k < count && grid.norms.residual > goal; ++k) {
+        const double coarse = coarse_cycle(grid);
+        const double rho =
+            static_cast<double>(kAdded) * grid.norms.weighted + static_cast<double>(kCorrection) * coarse;
+        direction(grid, grid.rho > 0.0 ? rho / grid.rho : 0.0);
         grid.rho = rho;
-        parallel_for("electric.direction", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
-            kernels.direction(fine, grid.krylov, static_cast<float>(beta), b, e);
-        });
-        const double curvature = parallel_sum(
-            "electric.apply", 0, size(fine), kChunk,
-            [&](std::int64_t b, std::int64_t e) { return kernels.apply(fine, grid.krylov.p.data(), b, e); });
+        const double curvature = apply(grid, grid.krylov.p);
         if (!(curvature > 0.0) || !(rho > 0.0)) return false;
-        grid.residual_norm2 =
-            parallel_sum("electric.advance", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
-                return kernels.advance(fine, grid.krylov, static_cast<float>(rho / curvature), b, e);
-            });
+        grid.norms = sum_norms("electric.advance", grid, [&](std::int64_t b, std::int64_t e) {
+            return grid.kernels.advance(fine, grid.krylov, static_cast<float>(rho / curvature), b, e);
+        });
         ++grid.iterations;
     }
-    return grid.residual_norm2 <= goal;
+    return grid.norms.residual <= goal;
 }
 
 bool is_finite(const Multigrid& grid) {
-    return std::isfinite(grid.residual_norm2) && std::isfinite(grid.rho);
+    return std::isfinite(grid.norms.residual) && std::isfinite(grid.rho);
+}
+
+double relative_residual(const Multigrid& grid) {
+    return grid.right_norm2 > 0.0 ? std::sqrt(grid.norms.residual / grid.right_norm2) : 0.0;
+}
+
+double best_scale(const Multigrid& grid, const std::vector<RightEntry>& right) {
+    const Level& fine = grid.levels[0];
+    const double along = along_right(grid, right);
+    const double missing = parallel_sum("electric.scale", 0, size(fine), kChunk, [&](std::int64_t b, std::int64_t e) {
+        return grid.kernels.dot(fine, grid.krylov.x.data(), fine.right.data(), b, e);
+    });
+    const double curvature = along - missing;  // x . A x, since A x = b - r
+    return curvature > 0.0 && std::isfinite(curvature) ? along / curvature : 1.0;
 }
 
 }  // namespace calot::electric

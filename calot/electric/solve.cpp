@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "calot/electric/conductivity.h"
 #include "calot/electric/generator.h"
@@ -11,58 +12,66 @@ namespace calot::electric {
 
 namespace {
 
-void switch_off(tissue::State& state, tissue::Exchange& exchange) {
-    state.generator = {};
-    exchange.joule.size = Int3(0);
-    exchange.joule.total_W = 0.0;
-    exchange.joule.outflow_W = 0.0;
-}
-
 std::size_t in_window(const Window& window, const Int3& cell) {
     return static_cast<std::size_t>(cell.x + window.cells * (cell.y + window.cells * cell.z));
 }
 
 /// The last potential as a first guess. Where the window has moved, cells that it has not seen before take the value of
-/// the nearest that it has.
+/// the nearest that it has. Cells without an unknown are at 0.
 void warm_start(const tissue::State& state, Work& work) {
     const Window& window = work.window;
     const Level& fine = work.grid.levels[0];
-    const Cells x = work.grid.krylov.x;
     const Int3 moved = window.low - state.field_low;
     const Int3 shift(moved[window.axis.x], moved[window.axis.y], moved[window.axis.z]);
     const int last = window.cells - 1;
-    for (int c = 0; c < window.cells; ++c)
-        for (int b = 0; b < window.cells; ++b) {
-            const Int3 from(0, std::clamp(b + shift.y, 0, last), std::clamp(c + shift.z, 0, last));
-            const float* source = state.potential.data() + in_window(window, from);
-            float* to = x.data() + fine.index(0, b, c);
-            if (shift.x == 0)
-                std::copy(source, source + window.cells, to);
-            else
-                for (int a = 0; a < window.cells; ++a) to[a] = source[std::clamp(a + shift.x, 0, last)];
-        }
+    for (const Level::Group& group : fine.groups) {
+        const Int3 cell = fine.coordinates(group.at);
+        const Int3 from(0, std::clamp(cell.y + shift.y, 0, last), std::clamp(cell.z + shift.z, 0, last));
+        const float* __restrict source = state.potential.data() + in_window(window, from);
+        const float* __restrict weight = fine.weight.data() + group.at;
+        float* __restrict to = work.grid.krylov.x.data() + group.at;
+        if (shift.x == 0 && cell.x + kGroup <= window.cells)
+            for (int k = 0; k < kGroup; ++k) to[k] = weight[k] > 0.0f ? source[cell.x + k] : 0.0f;
+        else
+            for (int k = 0; k < kGroup; ++k)
+                to[k] = weight[k] > 0.0f ? source[std::clamp(cell.x + k + shift.x, 0, last)] : 0.0f;
+    }
 }
 
-/// The finished solve: electrode at 1, gas and isolated cells at 0.
-void keep_potential(tissue::State& state, Work& work) {
+void keep_potential(tissue::State& state, const Work& work, float scale) {
     const Window& window = work.window;
     const Level& fine = work.grid.levels[0];
-    const Cells x = work.grid.krylov.x;
-    const float* weight = fine.weight.data();
+    float* __restrict kept = state.potential.data();
     for (int c = 0; c < window.cells; ++c)
         for (int b = 0; b < window.cells; ++b) {
-            const std::int64_t row = fine.index(0, b, c);
-            float* kept = state.potential.data() + in_window(window, {0, b, c});
-            for (int a = 0; a < window.cells; ++a)
-                kept[a] = x[static_cast<std::size_t>(row + a)] =
-                    weight[row + a] > 0.0f ? x[static_cast<std::size_t>(row + a)] : 0.0f;
+            const float* __restrict x = work.grid.krylov.x.data() + fine.index(0, b, c);
+            for (int a = 0; a < window.cells; ++a) kept[a] = scale * x[a];
+            kept += window.cells;
         }
-    for (const std::int32_t cell : work.electrode_cells) {
-        x[static_cast<std::size_t>(cell)] = 1.0f;
-        const Int3 place = fine.coordinates(cell);
-        state.potential[in_window(window, place)] = 1.0f;
-    }
     state.field_low = window.low;
+}
+
+/// What the generator gives now, the heat that it makes, and where it goes.
+void drive_load(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
+                const tissue::Input& input) {
+    const tissue::FieldState& field = state.field;
+    const bool on = field.solved != 0;
+    state.generator = drive(input, model.electric, on ? field.tissue_S + field.elsewhere_S : 0.0);
+    const double volt = on ? state.generator.voltage_V : 0.0,
+                 volt2 = state.generator.current_A > 0.0 ? volt * volt : 0.0;
+    tissue::JouleHeat& joule = exchange.joule;
+    joule.density = {state.joule_S_per_m3.data(), state.joule_S_per_m3.size()};
+    joule.place(model.hexels, state.field_low, Int3(volt2 > 0.0 ? model.electric.window_cells : 0));
+    joule.scale = static_cast<float>(volt2);
+    joule.total_W = field.tissue_S * volt2;
+    joule.outflow_W = field.elsewhere_S * volt2;
+    for (std::size_t m = 0; m < tissue::kStrayMaterials; ++m) {
+        tissue::StrayCurrent& stray = state.stray;
+        stray.power_W[m] = state.stray_S[m] * volt2;
+        stray.energy_J[m] += stray.power_W[m] * model.tick_s;
+        stray.density_A_per_m2[m] = state.stray_density_S_per_m2[m] * std::sqrt(volt2);
+        stray.highest_density_A_per_m2[m] = std::max(stray.highest_density_A_per_m2[m], stray.density_A_per_m2[m]);
+    }
 }
 
 }  // namespace
@@ -80,24 +89,27 @@ WorkPtr make_work(const tissue::Model& model, const Kernels& kernels) {
     assert(cells >= 4);
     WorkPtr work(new Work);
     work->hexel_conductivity_S_per_m = conductivity_at_rest_S_per_m(model);
+    work->conductivity = conductivity_of_materials(model);
     work->grid = make_multigrid(cells, kernels);
-    const auto length = static_cast<std::size_t>(work->grid.levels[0].length);
+    const Level& fine = work->grid.levels[0];
     const std::size_t side = static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
-    work->storage.allocate(work->grid.levels[0].length, 10, {&work->sigma_S_per_m});
-    work->electrode = BitArray(static_cast<std::int64_t>(length));
-    work->electrode_cells.reserve(2 * side);  // metal inside the window touches far fewer
-    work->electrode_faces.reserve(6 * work->electrode_cells.capacity());
-    work->right.reserve(6 * work->electrode_cells.capacity());
+    work->storage.allocate(fine.length, 10, {&work->sigma_S_per_m});
+    work->alive.assign(static_cast<std::size_t>(fine.group_capacity()), 0);
+    work->entered = BitArray(fine.length);
+    work->entries.reserve(2 * side);  // metal inside the window touches far fewer
+    work->electrode_cells.reserve(work->entries.capacity());
+    work->near_of_entry.reserve(work->entries.capacity());
+    work->right.reserve(work->entries.capacity());
     work->outer_faces.reserve(6 * side);
-    work->joule_W_per_m3.assign(side * static_cast<std::size_t>(cells), 0.0f);
     return work;
 }
 
-void begin_field(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange, Work& work) {
-    work.window = place_window(model, exchange, state.field_low);
-    assemble(model, state, exchange, work);
-    build(work.grid);
+void prepare(const tissue::State& state, Work& work) {
+    build_coarse(work.grid);
     warm_start(state, work);
+}
+
+void begin_field(Work& work) {
     begin(work.grid, work.right);
 }
 
@@ -105,33 +117,65 @@ bool iterate_field(const tissue::Model& model, Work& work, int count) {
     return iterate(work.grid, count, model.electric.relative_residual);
 }
 
-void finish_field(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
-                  const tissue::Input& input, Work& work) {
+void finish_field(const tissue::Model& model, tissue::State& state, Work& work) {
     if (!is_finite(work.grid)) {
-        switch_off(state, exchange);
-        state.status = {false, "potential", work.electrode_cells.empty() ? -1 : work.electrode_cells[0], state.tick};
+        state.field.solved = 0;
+        state.status = {false, "potential", work.entries.empty() ? -1 : work.entries[0].cell, state.tick};
         return;
     }
     work.iterations = work.grid.iterations;
-    keep_potential(state, work);
-    double tissue_W = 0.0, elsewhere_W = 0.0;  // per volt squared
-    find_heat(model, state, work, tissue_W, elsewhere_W);
-    state.generator = drive(input, model.electric, work.conductance_S);
-    if (state.generator.power_W == 0.0) return switch_off(state, exchange);
-    const double volt2 = state.generator.voltage_V * state.generator.voltage_V;
-    write_heat(model, exchange, work, state.generator.voltage_V);
-    exchange.joule.total_W = tissue_W * volt2;
-    exchange.joule.outflow_W = elsewhere_W * volt2;
+    const double scale = best_scale(work.grid, work.right);
+    find_heat(model, state, work, scale);
+    keep_potential(state, work, static_cast<float>(scale));
+    state.field.residual = relative_residual(work.grid);
+    state.field.contacts = static_cast<std::int64_t>(work.entries.size()) - work.arcs;
+    state.field.arcs = work.arcs;
+    state.field.solved = work.conductance_S >= kOpenCircuit_S ? 1 : 0;
+    if (state.field.solved != 0)
+        state.field.imbalance =
+            std::max(state.field.imbalance, std::abs(work.electrode_conductance_S / work.conductance_S - 1.0));
 }
 
-void solve_potential(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
-                     const tissue::Input& input, Work& work) {
-    if (!input.pedal || input.power_setting_W <= 0.0 || !any_touches(model.electric, exchange))
-        return switch_off(state, exchange);
-    if (state.tick % model.electric.refresh_ticks != 0) return;
-    begin_field(model, state, exchange, work);
-    iterate_field(model, work, model.electric.max_iterations);
-    finish_field(model, state, exchange, input, work);
+void step_field(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
+                const tissue::Input& input, Work& work) {
+    const bool reached = !exchange.near.empty() && any_reached(find_reach(model, state, exchange, input), exchange);
+    if (!reached) state.field.solved = 0;
+    const auto part = static_cast<int>(state.tick % model.frame_ticks);
+    if (part == 0) {
+        work.solving = reached;
+        if (reached) gather(model, state, exchange, input, work);
+    } else if (work.solving) {
+        if (part == 1)
+            assemble(model, work);
+        else if (part == 2)
+            prepare(state, work);
+        else if (part == 3)
+            begin_field(work);
+        else if (part < model.frame_ticks - 1)
+            iterate_field(model, work, 1);
+        else
+            finish_field(model, state, work);
+    }
+    if (part == model.frame_ticks - 1) {
+        // What was solved is no use when the metal has meanwhile left.
+        if (!reached) state.field.solved = 0;
+        work.solving = false;
+    }
+    drive_load(model, state, exchange, input);
+}
+
+void solve_now(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, const tissue::Input& input,
+               Work& work) {
+    state.field.solved = 0;
+    if (any_reached(find_reach(model, state, exchange, input), exchange)) {
+        gather(model, state, exchange, input, work);
+        assemble(model, work);
+        prepare(state, work);
+        begin_field(work);
+        iterate_field(model, work, model.electric.max_iterations);
+        finish_field(model, state, work);
+    }
+    drive_load(model, state, exchange, input);
 }
 
 }  // namespace calot::electric

@@ -18,12 +18,23 @@ struct WorkDeleter {
 using WorkPtr = std::unique_ptr<Work, WorkDeleter>;
 WorkPtr make_work(const tissue::Model& model);
 
-/// Every ElectricParameters::refresh_ticks: solves div(sigma grad phi) = 0 in a window of hexels about the bare tip,
-/// electrode = hexels of Exchange::near with bare_gap_m <= ElectricParameters::contact_gap_m, outer faces Robin 1/r,
-/// and writes Exchange::joule scaled to the power that the source gives (power-limited, never above the voltage limit),
-/// State::generator, State::potential. Organs that hold tissue conduct, so that current leaves the tissue through them.
-/// On the other ticks nothing changes, except that a released pedal or a lost contact ends the current at once.
-void solve_potential(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
-                     const tissue::Input& input, Work& work);
+/// One tick. The field of one volt on the metal, div(sigma grad phi) = 0 in a window of hexels about the bare tip, is
+/// solved over each frame of Model::frame_ticks in which metal touches tissue (or an arc could strike):
+///
+///     tick 0  place the window, conductivities, contacts     4 5 6  an iteration each, until the residual is small
+///          1  matrix                                         7      heat and potential of the new field
+///          2  coarse matrices, last potential
+///          3  its residual
+///
+/// Between, the field of the frame before holds, for tissue as it was then; hexels that are gone take no heat. Whether
+/// the pedal is down or not the field is solved, so that current flows in the tick in which it goes down. In every tick
+/// the generator meets the load (State::generator), and Exchange::joule is the heat at its voltage. A released pedal or
+/// a lost contact ends the current at once.
+void step_field(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
+                const tissue::Input& input, Work& work);
+
+/// The same with a whole solve in this very tick, to the residual of ElectricParameters. (For validation.)
+void solve_now(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, const tissue::Input& input,
+               Work& work);
 
 }  // namespace calot::electric

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "calot/electric/contact.h"
+
 namespace calot::electric {
 
 namespace {
@@ -23,23 +25,14 @@ int round_down_to_even(int n) {
 
 }  // namespace
 
-bool touches(const tissue::ElectricParameters& parameters, const tissue::NearHexel& near) {
-    return static_cast<double>(near.bare_gap_m) <= parameters.contact_gap_m;
-}
-
-bool any_touches(const tissue::ElectricParameters& parameters, const tissue::Exchange& exchange) {
-    return std::any_of(exchange.near.begin(), exchange.near.end(),
-                       [&](const tissue::NearHexel& near) { return touches(parameters, near); });
-}
-
-Window place_window(const tissue::Model& model, const tissue::Exchange& exchange, const Int3& low) {
+Window place_window(const tissue::Model& model, const tissue::Exchange& exchange, const Reach& reach, const Int3& low) {
     Window window;
     window.cells = model.electric.window_cells;
     window.axis = axes_by_stride(model.hexels);
 
     Int3 lowest(1 << 30), highest(-(1 << 30));
     for (const tissue::NearHexel& near : exchange.near)
-        if (touches(model.electric, near)) {
+        if (reaches(reach, near)) {
             const Int3 hexel = model.hexels.coordinates(near.hexel);
             lowest = glm::min(lowest, hexel);
             highest = glm::max(highest, hexel);

@@ -35,13 +35,11 @@ struct Window {
     }
 };
 
-/// Hexels of Exchange::near that touch bare metal.
-bool touches(const tissue::ElectricParameters& parameters, const tissue::NearHexel& near);
-bool any_touches(const tissue::ElectricParameters& parameters, const tissue::Exchange& exchange);
+struct Reach;  // contact.h
 
-/// Where the window goes: it stays at `low` while the middle of the touched hexels is within an eighth of its edge from
-/// its own middle; else it is centred there, on even coordinates. It never reaches past the lattice where it could lie
-/// inside it.
-Window place_window(const tissue::Model& model, const tissue::Exchange& exchange, const Int3& low);
+/// Where the window goes: it stays at `low` while the middle of the hexels that current enters is within an eighth of
+/// its edge from its own middle; else it is centred there, on even coordinates. It never reaches past the lattice where
+/// it could lie inside it.
+Window place_window(const tissue::Model& model, const tissue::Exchange& exchange, const Reach& reach, const Int3& low);
 
 }  // namespace calot::electric

@@ -90,6 +90,9 @@ simulation::Setup build(const Scene& scene, std::vector<anatomy::MeshReport>* re
     setup.camera.eye_m = locate(scene.camera_eye, setup.anatomy, "[camera] eye", scene, problems);
     setup.camera.target_m = locate(scene.camera_target, setup.anatomy, "[camera] target", scene, problems);
     setup.camera.field_of_view_deg = scene.field_of_view_deg;
+    const Vec3 return_m = scene.electric.return_placed
+                              ? locate(scene.return_electrode, setup.anatomy, "[electric] return_at", scene, problems)
+                              : Vec3(0.0);
     std::vector<simulation::Keyframe> keyframes;
     for (const ScriptKey& key : scene.script) {
         const Vec3 tip_m = locate(key.tip, setup.anatomy, "the script", scene, problems);
@@ -110,6 +113,7 @@ simulation::Setup build(const Scene& scene, std::vector<anatomy::MeshReport>* re
                          error.hint);
     }
     set_parameters(scene, setup.model);
+    setup.model.electric.return_m = return_m;
     return setup;
 }
 

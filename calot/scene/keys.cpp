@@ -168,6 +168,19 @@ Group script_burst_group() {
     KeyTable<B> t(group);
     t.number("from", kSecond, 0, 3600, [](B& b) -> auto& { return b.burst.from_s; }, "").required = true;
     t.number("to", kSecond, 0, 3600, [](B& b) -> auto& { return b.burst.to_s; }, "").required = true;
+    std::vector<std::string> presets{"none"};
+    for (const tissue::GeneratorPreset& preset : tissue::kGeneratorPresets) presets.emplace_back(preset.name);
+    Key& preset = t.word("preset", presets, [](B& b) -> auto& { return b.preset; },
+      "A usual setting of mode and power; the two keys below override it.");
+    preset.set = [](void* record, const Value& value) {
+        B& b = *static_cast<B*>(record);
+        b.preset = std::get<std::string>(value);
+        for (const tissue::GeneratorPreset& known : tissue::kGeneratorPresets)
+            if (b.preset == known.name) {
+                b.burst.mode = known.mode;
+                b.burst.power_W = known.power_W;
+            }
+    };
     t.number("power_W", named("W"), 0.1, 300, [](B& b) -> auto& { return b.burst.power_W; },
       "The generator's setting.");
     t.choice("mode", {"cut", "blend", "coag"}, [](B& b) -> auto& { return b.burst.mode; }, "");

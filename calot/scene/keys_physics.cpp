@@ -47,19 +47,56 @@ Group electric_group() {
     Group group{"electric", "The electric field about the tip (section 5).", {}, {}};
     KeyTable<Scene> t(group);
     t.integer(
-        "refresh_ticks", named("ticks"), 1, 1000, [](Scene & s) -> auto& { return s.electric.refresh_ticks; },
-        "The field is solved anew so often.");
-    t.integer(
         "window_cells", named("hexels"), 8, 256, [](Scene & s) -> auto& { return s.electric.window_cells; },
         "Edge of the cube about the tip in which it is solved.");
     t.number(
         "relative_residual", kNoUnit, 1e-9, 0.5, [](Scene & s) -> auto& { return s.electric.relative_residual; },
         "Accuracy of the solution.");
-    t.integer(
-        "max_iterations", kNoUnit, 1, 10000, [](Scene & s) -> auto& { return s.electric.max_iterations; }, "");
     t.number(
         "voltage_limit_V", named("V"), 1, 10000, [](Scene & s) -> auto& { return s.electric.voltage_limit_V; },
-        "RMS. The generator gives its power up to this voltage.");
+        "RMS, in every mode. The generator gives its power up to this voltage.");
+    t.number(
+        "current_limit_A", named("A"), 0.01, 100, [](Scene & s) -> auto& { return s.electric.current_limit_A; },
+        "RMS. It gives its power up to this current.");
+    static constexpr const char* kModes[3] = {"cut", "blend", "coag"};
+    for (std::size_t mode = 0; mode < 3; ++mode) {
+        const std::string name = kModes[mode];
+        t.number((name + "_peak_V").c_str(), named("V"), 1, 20000,
+                 [mode](Scene & s) -> auto& { return s.electric.peak_voltage_V[mode]; }, "Peak voltage of the mode.");
+        t.number((name + "_crest_factor").c_str(), kNoUnit, 1, 20,
+                 [mode](Scene & s) -> auto& { return s.electric.crest_factor[mode]; }, "Peak over RMS.");
+    }
+    t.number(
+        "arc_threshold_V", named("V"), 0, 1e5, [](Scene & s) -> auto& { return s.electric.arc_threshold_V; },
+        "Peak. Below, no arc strikes between metal and tissue.");
+    t.number(
+        "arc_field_kV_per_mm", Unit{"kV/mm", 1e6, 0.0}, 0.01, 1000,
+        [](Scene & s) -> auto& { return s.electric.arc_field_V_per_m; }, "More for every millimetre of gas.");
+    t.number(
+        "arc_resistance_Ohm", named("Ohm"), 0, 1e7, [](Scene & s) -> auto& { return s.electric.arc_resistance_Ohm; },
+        "Of one arc to one hexel,");
+    t.number(
+        "arc_resistance_Ohm_per_mm", Unit{"Ohm/mm", 1e3, 0.0}, 0, 1e7,
+        [](Scene & s) -> auto& { return s.electric.arc_resistance_Ohm_per_m; }, "and more with its length.");
+    t.number(
+        "arc_conductivity_S_per_m", named("S/m"), 0, 100,
+        [](Scene & s) -> auto& { return s.electric.arc_conductivity_S_per_m; },
+        "At least this, where arcs burn through tissue that has dried at the metal.");
+    t.number(
+        "char_conductivity_S_per_m", named("S/m"), 1e-6, 1e4,
+        [](Scene & s) -> auto& { return s.electric.char_conductivity_S_per_m; }, "Of what sticks to the wire.");
+    t.boolean(
+        "return_placed", [](Scene & s) -> auto& { return s.electric.return_placed; },
+        "The return electrode is at return_at; else far away.");
+    t.text(
+        "return_at", [](Scene & s) -> auto& { return s.return_electrode.landmark; },
+        "Landmark near it; empty: the origin.");
+    t.vector(
+        "return_offset_mm", kMm, -2000, 2000, [](Scene & s) -> auto& { return s.return_electrode.offset_m; },
+        "From that landmark to the return electrode.");
+    t.number(
+        "return_radius_mm", kMm, 5, 500, [](Scene & s) -> auto& { return s.electric.return_radius_m; },
+        "Of a disc with the pad's area.");
     return group;
 }
 
@@ -167,6 +204,10 @@ Group material_group(const std::string& name, std::size_t index) {
            "Of thermal damage.");
     number("electric_conductivity_S_per_m", named("S/m"), 0, 1e3, &M::electric_conductivity_S_per_m,
            "At about 450 kHz.");
+    number("electric_temperature_coefficient_per_K", named("1/K"), 0, 0.2, &M::electric_temperature_coefficient_per_K,
+           "Share by which it rises per kelvin, up to boiling.");
+    number("electric_dry_conductivity_S_per_m", named("S/m"), 0, 1e3, &M::electric_dry_conductivity_S_per_m,
+           "Without water.");
     t.text(
         "source", [=](Scene & s) -> auto& { return s.materials[index].source; }, "Where the values come from.");
     return group;

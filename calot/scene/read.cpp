@@ -193,14 +193,13 @@ class DocumentReader {
         const Place place = place_of(table.source(), file_);
         void* record = group.records->append(scene_, place);
         for (auto&& [key, node] : table) {
-            const Key* found = nullptr;
-            for (const Key& entry : group.keys)
-                if (entry.name == key.str()) found = &entry;
-            if (found)
-                set(*found, record, node, group.path + "." + found->name);
-            else
-                tell_unknown(group.path, std::string(key.str()), place_of(key.source(), file_));
+            const bool known = std::any_of(group.keys.begin(), group.keys.end(),
+                                           [&, name = key.str()](const Key& entry) { return entry.name == name; });
+            if (!known) tell_unknown(group.path, std::string(key.str()), place_of(key.source(), file_));
         }
+        // In the order of the table of keys: a preset comes before what overrides it.
+        for (const Key& key : group.keys)
+            if (const toml::node* node = table.get(key.name)) set(key, record, *node, group.path + "." + key.name);
         for (const Key& key : group.keys)
             if (key.required && !table.contains(key.name))
                 problems_.add(place, fmt::format("[[{}]] has no '{}'", group.path, key.name),

@@ -42,6 +42,7 @@ struct ScriptKey {
 
 struct ScriptBurst {
     simulation::Burst burst;
+    std::string preset = "none";  ///< a GeneratorPreset that gave mode and power
     Place place;
 };
 
@@ -97,6 +98,7 @@ struct Scene {
 
     instruments::HookShape hook;
     Anchor trocar;
+    Anchor return_electrode;
     Anchor camera_eye, camera_target;
     double field_of_view_deg = 60.0;
     Picture picture;

@@ -62,7 +62,7 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     state.hook_force_N = exchange.contact_force_N + exchange.organ_force_N;
     clock.lap(Stage::deformation);
 
-    electric::solve_potential(model, state, exchange, input, *work.electric);
+    electric::step_field(model, state, exchange, input, *work.electric);
     clock.lap(Stage::electric);
 
     if (input.wipe_tip) state.tip.char_kg = 0.0;

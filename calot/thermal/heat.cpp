@@ -16,12 +16,13 @@ namespace {
 /// Blocks per chunk of a parallel loop: some microseconds of work.
 constexpr std::int64_t kBlocksPerChunk = 32;
 
-JouleRows joule_rows(const Lattice& lattice, const tissue::JouleHeat& joule) {
+JouleRows joule_rows(const Lattice& lattice, const tissue::JouleHeat& joule, double dt_s) {
     JouleRows rows{};
     if (joule.size == Int3(0)) return rows;
     const Axes axes = axes_of(lattice);
     const int order[3] = {axes.fast, axes.middle, axes.slow};
-    rows.density_W_per_m3 = joule.density_W_per_m3.data();
+    rows.density = joule.density.data();
+    rows.scaled_dt_s = static_cast<float>(static_cast<double>(joule.scale) * dt_s);
     for (int k = 0; k < 3; ++k) {
         rows.low[k] = joule.low[order[k]];
         rows.size[k] = joule.size[order[k]];
@@ -50,7 +51,7 @@ HeatStep make_step(const tissue::Model& model, tissue::State& state, const tissu
     step.conduction_factor = static_cast<float>(dt_s / (s * s));
     step.surface_factor = static_cast<float>(dt_s / s);
     step.threshold = thermal.phase_model == tissue::PhaseModel::threshold;
-    step.joule = joule_rows(model.hexels, exchange.joule);
+    step.joule = joule_rows(model.hexels, exchange.joule, dt_s);
     step.temperature_K = work.temperature_K.data();
     step.next_temperature_K = work.next_temperature_K.data();
     step.enthalpy_J_per_m3 = state.enthalpy_J_per_m3.data();
@@ -106,7 +107,7 @@ void run_block(const HeatStep& step, const Lattice& lattice, Work& work, std::si
                   step.next_temperature_K + cells.begin);
         return;
     }
-    if (step.joule.density_W_per_m3 != nullptr)
+    if (step.joule.density != nullptr)
         (work.scalar ? deposit_cells_scalar : deposit_cells)(step, cells.begin, cells.end, sums);
     (work.scalar ? step_cells_scalar : step_cells)(step, cells.begin, cells.end, work.pristine.test(block), sums);
 }

@@ -10,7 +10,8 @@ namespace calot::thermal {
 
 /// Joule heat as the kernels find it: a box of hexels whose rows run along the lattice's.
 struct JouleRows {
-    const float* density_W_per_m3 = nullptr;  ///< null: none
+    const float* density = nullptr;           ///< JouleHeat::density; null: none. 0 in cells beyond the lattice
+    float scaled_dt_s;                        ///< dt times JouleHeat::scale
     int low[3];                               ///< of the box, along the fast, middle and slow axis
     int size[3];
     std::int64_t row_cells;   ///< lattice: cells from row to row
@@ -68,7 +69,7 @@ inline void for_joule_rows(const JouleRows& joule, std::int64_t begin, std::int6
         const std::int64_t low = box < begin ? begin : box;
         const std::int64_t high = box + joule.size[0] > end ? end : box + joule.size[0];
         if (low >= high) continue;
-        body(low, joule.density_W_per_m3 + (slow * joule.size[1] + middle) * joule.size[0] + (low - box), high - low);
+        body(low, joule.density + (slow * joule.size[1] + middle) * joule.size[0] + (low - box), high - low);
     }
 }
 

@@ -117,7 +117,7 @@ void deposit_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t
         for (std::int64_t k = 0; k < count; ++k) {
             if (!bit(step.living, first + k)) continue;
             float& enthalpy = step.enthalpy_J_per_m3[first + k];
-            const float next = enthalpy + density[k] * step.dt_s;
+            const float next = enthalpy + density[k] * step.joule.scaled_dt_s;
             sums.delivered += static_cast<double>(next - enthalpy);
             enthalpy = next;
         }

@@ -122,7 +122,7 @@ HWY_INLINE F exponential(F x) {
 
 void deposit_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
     const D d;
-    const F dt = number(step.dt_s);
+    const F dt = number(step.joule.scaled_dt_s);
     CellSum sum;
     float rest = 0.0f;
     for_joule_rows(step.joule, begin, end, [&](std::int64_t first, const float* density, std::int64_t count) HWY_ATTR {
@@ -144,7 +144,7 @@ void deposit_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, B
         for (std::int64_t j = 0; k + j < count; ++j) {  // cells beyond belong to other threads
             if (((living >> j) & 1u) == 0) continue;
             float& enthalpy = step.enthalpy_J_per_m3[first + k + j];
-            const float next = enthalpy + density[k + j] * step.dt_s;
+            const float next = enthalpy + density[k + j] * step.joule.scaled_dt_s;
             rest += next - enthalpy;
             enthalpy = next;
         }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "calot/base/array.h"
@@ -48,12 +49,14 @@ struct GasEvent {
     float temperature_K = 373.15f;
 };
 
-/// Joule heat in a box of hexels, from the last electric solve. Empty (size 0) when no current flows.
+/// Joule heat in a box of hexels, from the last electric solve: a view of State::joule_S_per_m3. Empty (size 0) when no
+/// current flows.
 struct JouleHeat {
     Int3 low{0};                    ///< hexel coordinates of the box's low corner
     Int3 size{0};
     Int3 stride{0};                 ///< offset in `density` of one step along x, y, z; rows lie as in Model::hexels
-    Array<float> density_W_per_m3;  ///< [size.x * size.y * size.z], scaled to the present power
+    std::span<const float> density; ///< [size.x * size.y * size.z], times `scale` in W/m^3
+    float scale = 1.0f;             ///< from the field of one volt to the present voltage: V^2
     double total_W = 0.0;           ///< sum of density * hexel volume
     double outflow_W = 0.0;         ///< dissipated outside the tissue's hexels, in held organs and beyond the window;
                                     ///< the generator delivers total_W + outflow_W

@@ -34,6 +34,8 @@ struct Material {
 
     // Electricity, at about 450 kHz and body temperature
     double electric_conductivity_S_per_m = 0.2;
+    double electric_temperature_coefficient_per_K = 0.02;  ///< sigma rises by this share per kelvin up to boiling
+    double electric_dry_conductivity_S_per_m = 1e-4;       ///< without water
 
     std::string source;  ///< where the values come from, for people
 };

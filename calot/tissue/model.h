@@ -1,6 +1,7 @@
 #pragma once
 // Model: everything that stays constant after set-up. The mutable counterpart is tissue/state.h.
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,12 +36,32 @@ struct DeformationParameters {
 
 /// Electric field (section 5).
 struct ElectricParameters {
-    int refresh_ticks = 8;            ///< the field is solved anew every so many ticks
     int window_cells = 48;            ///< edge of the cubic window about the tip, hexels
     double relative_residual = 1e-2;  ///< conjugate gradients stop here
-    int max_iterations = 60;
-    double voltage_limit_V = 700.0;  ///< RMS, 1 kV peak of a cutting sine; the power-limited source never exceeds this
-    double contact_gap_m = 0.05e-3;  ///< bare metal this close to a hexel's surface carries current into it
+    int max_iterations = 100;         ///< of a whole solve at once (electric::solve_now); runs spread theirs over ticks
+    double contact_gap_m = 0.05e-3;   ///< bare metal this close to a hexel's surface carries current into it
+
+    // The generator (electric/generator.h): constant current, then constant power, then constant voltage.
+    double voltage_limit_V = 700.0;  ///< RMS, in every mode
+    double current_limit_A = 2.0;    ///< RMS
+    /// By GeneratorMode (cut, blend, coag): peak voltage and peak over RMS.
+    std::array<double, 3> peak_voltage_V{1000.0, 1600.0, 4500.0};
+    std::array<double, 3> crest_factor{1.4142135623730951, 2.5, 6.5};
+
+    // Arcs (electric/contact.h)
+    double arc_threshold_V = 200.0;       ///< peak; below, no arc strikes between metal and tissue
+    double arc_field_V_per_m = 2.6e6;     ///< and this much more per metre of gas between them
+    double arc_resistance_Ohm = 1000.0;   ///< of one arc to one hexel
+    double arc_resistance_Ohm_per_m = 1e6;
+    double arc_conductivity_S_per_m = 0.02;  ///< of a dried hexel that arcs burn through
+    double char_density_kg_per_m3 = 400.0;
+    double char_conductivity_S_per_m = 0.05;  ///< of what sticks to the wire
+    double bare_area_m2 = 50e-6;              ///< of the wire, over which char spreads
+
+    /// The return electrode. Far away in all directions when it has no place.
+    bool return_placed = false;
+    Vec3 return_m{0.0};
+    double return_radius_m = 0.06;  ///< of a disc with a pad's area
 };
 
 /// Heat (section 6).

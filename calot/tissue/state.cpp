@@ -37,6 +37,7 @@ State State::make(const Model& model) {
     }
     const auto window = static_cast<std::size_t>(model.electric.window_cells);
     state.potential.assign(window * window * window, 0.0f);
+    state.joule_S_per_m3.assign(window * window * window, 0.0f);
     return state;
 }
 
@@ -75,6 +76,11 @@ std::vector<Field> fields(State& s) {
     all.push_back(array_field("damage", s.damage));
     all.push_back(scalar_field("field_low", s.field_low));
     all.push_back(array_field("potential", s.potential));
+    all.push_back(array_field("joule", s.joule_S_per_m3));
+    all.push_back(scalar_field("field", s.field));
+    all.push_back(scalar_field("stray_heat", s.stray_S));
+    all.push_back(scalar_field("stray_density", s.stray_density_S_per_m2));
+    all.push_back(scalar_field("stray", s.stray));
     all.push_back(scalar_field("generator", s.generator));
     all.push_back(scalar_field("tip", s.tip));
     all.push_back(scalar_field("energy", s.energy_J));

@@ -47,10 +47,32 @@ struct TipState {
 
 /// What the generator and the hook are doing.
 struct GeneratorState {
-    double voltage_V = 0.0;     ///< RMS
-    double current_A = 0.0;     ///< RMS
-    double power_W = 0.0;       ///< into tissue
-    double impedance_Ohm = 0.0; ///< 0 = open circuit
+    double voltage_V = 0.0;       ///< RMS
+    double current_A = 0.0;       ///< RMS
+    double power_W = 0.0;         ///< into tissue
+    double impedance_Ohm = 0.0;   ///< 0 = open circuit
+    double peak_voltage_V = 0.0;  ///< of the waveform: RMS times the mode's crest factor
+    std::int64_t limit = 0;       ///< what rules: 0 nothing (off, open circuit), 1 current, 2 power, 3 voltage
+};
+
+/// The field about the tip for one volt on the metal, as last solved.
+struct FieldState {
+    double tissue_S = 0.0;        ///< heat in hexels per V^2
+    double elsewhere_S = 0.0;     ///< in organs that hold tissue and beyond the window; both together are 1 / R
+    double residual = 0.0;        ///< |b - A phi| / |b| of the last solve
+    double imbalance = 0.0;       ///< greatest |V I - heat - outflow| / V I of any solve so far
+    std::int64_t solved = 0;      ///< 1: metal touches tissue and the field is that of this contact
+    std::int64_t contacts = 0;    ///< hexels that metal touches
+    std::int64_t arcs = 0;        ///< hexels that arcs strike
+};
+
+/// Where current went that was not meant for it: by material, the first kStrayMaterials of Model::materials.
+inline constexpr std::size_t kStrayMaterials = 16;
+struct StrayCurrent {
+    std::array<double, kStrayMaterials> power_W{};                   ///< now
+    std::array<double, kStrayMaterials> energy_J{};                  ///< since the start
+    std::array<double, kStrayMaterials> density_A_per_m2{};          ///< highest current density now, RMS
+    std::array<double, kStrayMaterials> highest_density_A_per_m2{};  ///< and since the start
 };
 
 /// Numerical trouble stops a run in order.
@@ -81,6 +103,11 @@ struct State {
     Int3 field_low{0};                               ///< hexel coordinates of the window's low corner
     Array<float> potential;                          ///< [window_cells^3] in units of the electrode's voltage, axes ordered as
                                                      ///< in Model::hexels (its fastest axis fastest)
+    Array<float> joule_S_per_m3;                     ///< [window_cells^3] Joule heat of one volt [W/(m^3 V^2)], likewise
+    FieldState field;
+    /// For one volt: heat by material [W/V^2], and highest current density [A/(m^2 V)].
+    std::array<double, kStrayMaterials> stray_S{}, stray_density_S_per_m2{};
+    StrayCurrent stray;
 
     GeneratorState generator;
     TipState tip;                                    ///< written by thermal

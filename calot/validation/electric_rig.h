@@ -34,7 +34,7 @@ struct Rig {
         near.bare_gap_m = gap_m;
         exchange.near.push_back(near);
     }
-    void solve() { solve_potential(model, state, exchange, input, *work); }
+    void solve() { solve_now(model, state, exchange, input, *work); }
     double resistance_Ohm() const { return 1.0 / work->conductance_S; }
 };
 

@@ -89,6 +89,7 @@ struct HeatRun {
     tissue::Model model;
     tissue::State state;
     tissue::Exchange exchange;
+    Array<float> joule_W_per_m3;  ///< what Exchange::joule looks at
     Work work;
 
     explicit HeatRun(tissue::Model m) : model(std::move(m)), state(tissue::State::make(model)) {
@@ -119,14 +120,15 @@ struct HeatRun {
     void set_joule(const Int3& low, const Int3& size, const std::function<double(const Int3&)>& density_W_per_m3) {
         tissue::JouleHeat& joule = exchange.joule;
         joule.place(model.hexels, low, size);
-        joule.density_W_per_m3.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y * size.z));
+        joule_W_per_m3.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y * size.z));
         for (int z = 0; z < size.z; ++z)
             for (int y = 0; y < size.y; ++y)
                 for (int x = 0; x < size.x; ++x) {
                     const Int3 cell = low + Int3(x, y, z);
-                    joule.density_W_per_m3[static_cast<std::size_t>(joule.index(cell))] =
+                    joule_W_per_m3[static_cast<std::size_t>(joule.index(cell))] =
                         static_cast<float>(density_W_per_m3(cell));
                 }
+        joule.density = {joule_W_per_m3.data(), joule_W_per_m3.size()};
     }
     /// Share of the delivered energy that the budget loses.
     double imbalance() const {

@@ -14,6 +14,7 @@ TEST(Allocation, NoneInATick) {
     const long before = calot::test::allocations();
     for (int k = 0; k < 16; ++k) {
         rig.state.hexel_present.clear(rig.model.hexels.index(10 + k, 22, 19));
+        step_field(rig.model, rig.state, rig.exchange, rig.input, *rig.work);
         rig.solve();
         rig.input.pedal = k % 3 != 0;
         ++rig.state.tick;

@@ -24,6 +24,10 @@ std::uint64_t hash_of_rough_solve(int window, const Kernels& kernels) {
         rig.work->hexel_conductivity_S_per_m[static_cast<std::size_t>(hexel)] *=
             static_cast<float>(std::pow(10.0, random.uniform(-4.0, 0.0)));
         if (random.uniform() < 0.2 && rig.state.hexel_present.test(hexel)) rig.state.hexel_present.clear(hexel);
+        // Some hexels are warm, some of them have lost water.
+        const auto h = static_cast<std::size_t>(hexel);
+        if (random.uniform() < 0.3) rig.state.enthalpy_J_per_m3[h] = static_cast<float>(random.uniform(0.0, 3e8));
+        if (random.uniform() < 0.1) rig.state.water_kg_per_m3[h] *= static_cast<float>(random.uniform());
     }
     for (int x = 20; x < 30; ++x)
         for (int z = 33; z < 36; ++z) rig.touch({x, 22, z});
@@ -32,10 +36,9 @@ std::uint64_t hash_of_rough_solve(int window, const Kernels& kernels) {
     rig.solve();
     EXPECT_GT(rig.state.generator.power_W, 0.0);
     const std::uint64_t field = hash_bytes(rig.state.potential.data(), rig.state.potential.size() * sizeof(float));
-    const Int3 size = rig.exchange.joule.size;
-    return hash_bytes(rig.exchange.joule.density_W_per_m3.data(),
-                      static_cast<std::size_t>(size.x * size.y * size.z) * sizeof(float), field) ^
-           hash_bytes(&rig.state.generator, sizeof(rig.state.generator));
+    return hash_bytes(rig.state.joule_S_per_m3.data(), rig.state.joule_S_per_m3.size() * sizeof(float), field) ^
+           hash_bytes(&rig.state.generator, sizeof(rig.state.generator)) ^
+           hash_bytes(&rig.state.stray, sizeof(rig.state.stray));
 }
 
 }  // namespace

@@ -15,14 +15,13 @@ namespace {
 double sum_of_density_W(const Rig& rig) {
     const tissue::JouleHeat& joule = rig.exchange.joule;
     double sum = 0.0;
-    for (int k = 0; k < joule.size.x * joule.size.y * joule.size.z; ++k)
-        sum += static_cast<double>(joule.density_W_per_m3[static_cast<std::size_t>(k)]);
-    return sum * rig.model.hexel_volume_m3();
+    for (const float density : joule.density) sum += static_cast<double>(density);
+    return sum * static_cast<double>(joule.scale) * rig.model.hexel_volume_m3();
 }
 
 float density_at(const Rig& rig, const Int3& hexel) {
     const tissue::JouleHeat& joule = rig.exchange.joule;
-    return joule.density_W_per_m3[static_cast<std::size_t>(joule.index(hexel))];
+    return joule.scale * joule.density[static_cast<std::size_t>(joule.index(hexel))];
 }
 
 /// Takes away a share of the hexels and scales the conductivity of the others by up to 1e4.
@@ -65,10 +64,12 @@ TEST(FieldInvariant, HeatLiesInPresentHexelsOnly) {
     for (int z = 0; z < joule.size.z; ++z)
         for (int y = 0; y < joule.size.y; ++y)
             for (int x = 0; x < joule.size.x; ++x) {
-                const Int3 hexel = joule.low + Int3(x, y, z);
+                const Int3 hexel = joule.low + Int3(x, y, z), size = rig.model.hexels.size;
                 const float density = density_at(rig, hexel);
                 ASSERT_GE(density, 0.0f);
-                const bool present = rig.state.hexel_present.test(rig.model.hexels.index(hexel));
+                const bool inside =
+                    glm::all(glm::greaterThanEqual(hexel, Int3(0))) && glm::all(glm::lessThan(hexel, size));
+                const bool present = inside && rig.state.hexel_present.test(rig.model.hexels.index(hexel));
                 ASSERT_TRUE(present || density == 0.0f);
             }
 }

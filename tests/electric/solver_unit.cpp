@@ -18,7 +18,7 @@ TEST(Solver, IterationsGrowSlowly) {
         rig.solve();
         if (first == 0) first = rig.work->iterations;
         EXPECT_GT(rig.work->iterations, 3);
-        EXPECT_LE(rig.work->iterations, first + 5) << cells << " cells, " << first << " at 16";
+        EXPECT_LE(rig.work->iterations, first + 8) << cells << " cells, " << first << " at 16";
         EXPECT_LT(rig.work->iterations, rig.model.electric.max_iterations);
     }
 }
@@ -26,7 +26,10 @@ TEST(Solver, IterationsGrowSlowly) {
 // Conjugate gradients need M symmetric and positive: u . M v = v . M u.
 TEST(Solver, PreconditionerIsSymmetricPositive) {
     Rig rig = held_rig(1e-2);
-    begin_field(rig.model, rig.state, rig.exchange, *rig.work);
+    gather(rig.model, rig.state, rig.exchange, rig.input, *rig.work);
+    assemble(rig.model, *rig.work);
+    prepare(rig.state, *rig.work);
+    Multigrid& grid = rig.work->grid;
     Level& fine = rig.work->grid.levels[0];
     const auto length = static_cast<std::size_t>(fine.length);
     auto random_vector = [&](std::uint64_t seed) {
@@ -36,17 +39,23 @@ TEST(Solver, PreconditionerIsSymmetricPositive) {
             v[i] = fine.weight[i] > 0.0f ? static_cast<float>(random.uniform(-1.0, 1.0)) : 0.0f;
         return v;
     };
-    auto precondition_of = [&](const Array<float>& v) {
-        std::copy(v.begin(), v.end(), fine.right.begin());
-        for (std::size_t i = 0; i < length; ++i) fine.solution[i] = fine.weight[i] * v[i];
-        EXPECT_GT(precondition(rig.work->grid), 0.0);
-        return Array<float>(fine.scratch.begin(), fine.scratch.end());
-    };
     auto dot = [&](const Array<float>& a, const Array<float>& b) {
         double sum = 0.0;
         for (std::size_t i = 0; i < length; ++i)
             if (fine.weight[i] > 0.0f) sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
         return sum;
+    };
+    auto precondition_of = [&](const Array<float>& v) {
+        std::copy(v.begin(), v.end(), fine.right.begin());
+        grid.norms.weighted = 0.0;
+        for (std::size_t i = 0; i < length; ++i)
+            grid.norms.weighted +=
+                static_cast<double>(fine.weight[i]) * static_cast<double>(v[i]) * static_cast<double>(v[i]);
+        const double product = precondition(grid);
+        EXPECT_GT(product, 0.0);
+        Array<float> z(grid.krylov.p.begin(), grid.krylov.p.end());
+        EXPECT_NEAR(dot(v, z) / product, 1.0, 1e-5) << "r . z without a sweep of its own";
+        return z;
     };
     const Array<float> u = random_vector(1), v = random_vector(2);
     const Array<float> mu = precondition_of(u), mv = precondition_of(v);
@@ -69,7 +78,8 @@ TEST(Solver, TissueApartFromTheMetalStaysCold) {
         for (int y = 9; y < 15; ++y)
             for (int x = 9; x < 15; ++x) {
                 const tissue::JouleHeat& joule = rig.exchange.joule;
-                heat += static_cast<double>(joule.density_W_per_m3[static_cast<std::size_t>(joule.index({x, y, z}))]);
+                heat +=
+                    static_cast<double>(joule.scale * joule.density[static_cast<std::size_t>(joule.index({x, y, z}))]);
             }
     EXPECT_LT(heat * rig.model.hexel_volume_m3(), 1e-9 * rig.exchange.joule.total_W);
 }
@@ -85,11 +95,58 @@ TEST(Generator, PowerThenVoltageLimit) {
     EXPECT_NEAR(wet.voltage_V, std::sqrt(40.0 * 500.0), 1e-9);
     EXPECT_NEAR(wet.current_A * wet.impedance_Ohm, wet.voltage_V, 1e-9);
     const tissue::GeneratorState fat = drive(input, parameters, 1.0 / 9000.0);
+    EXPECT_EQ(wet.limit, 2);
+    EXPECT_EQ(fat.limit, 3);
     EXPECT_NEAR(fat.voltage_V, 300.0, 1e-9);
     EXPECT_NEAR(fat.power_W, 300.0 * 300.0 / 9000.0, 1e-9);
     const tissue::GeneratorState open = drive(input, parameters, 1e-12);
     EXPECT_EQ(open.power_W, 0.0);
+    EXPECT_NEAR(open.voltage_V, 300.0, 1e-9) << "at its limit";
     EXPECT_EQ(open.impedance_Ohm, 0.0);
+}
+
+// Constant current, constant power, constant voltage, in this order, and continuous where they meet.
+TEST(Generator, ThreeRegimesAsImpedanceRises) {
+    tissue::Input input;
+    input.pedal = true;
+    input.power_setting_W = 30.0;
+    const tissue::ElectricParameters parameters;
+    std::int64_t last_limit = 0;
+    double last_V = 0.0;
+    for (double ohm = 0.1; ohm < 1e6; ohm *= 1.02) {
+        const tissue::GeneratorState s = drive(input, parameters, 1.0 / ohm);
+        EXPECT_GE(s.limit, last_limit);
+        EXPECT_LE(s.power_W, 30.0 * (1.0 + 1e-9));
+        EXPECT_LE(s.current_A, parameters.current_limit_A * (1.0 + 1e-9));
+        EXPECT_LE(s.voltage_V, parameters.voltage_limit_V * (1.0 + 1e-9));
+        EXPECT_GE(s.voltage_V, last_V * (1.0 - 1e-9));
+        if (last_V > 0.0) {
+            EXPECT_LE(s.voltage_V / last_V, 1.02 + 1e-9);
+        }
+        last_limit = s.limit;
+        last_V = s.voltage_V;
+    }
+    EXPECT_EQ(last_limit, 3);
+}
+
+TEST(Generator, ModesDifferInCrestFactorAndPeak) {
+    tissue::Input input;
+    input.pedal = true;
+    input.power_setting_W = 30.0;
+    const tissue::ElectricParameters parameters;
+    double last_crest = 1.0, last_peak = 0.0;
+    for (const auto mode : {tissue::GeneratorMode::cut, tissue::GeneratorMode::blend, tissue::GeneratorMode::coag}) {
+        input.mode = mode;
+        const tissue::GeneratorState open = drive(input, parameters, 0.0),
+                                     loaded = drive(input, parameters, 1.0 / 500.0);
+        EXPECT_NEAR(loaded.power_W, 30.0, 1e-9) << "the same power from every waveform";
+        const double crest = loaded.peak_voltage_V / loaded.voltage_V;
+        EXPECT_GT(crest, last_crest);
+        EXPECT_GT(open.peak_voltage_V, last_peak);
+        last_crest = crest;
+        last_peak = open.peak_voltage_V;
+    }
+    EXPECT_GT(last_peak, 4000.0) << "coag: several kilovolts";
 }
 
 TEST(Generator, SettingsReachTheTissue) {
@@ -116,35 +173,124 @@ void expect_off(const Rig& rig) {
 }
 }  // namespace
 
-TEST(Contact, CurrentFlowsOnRefreshTicksAndEndsAtOnce) {
+namespace {
+void tick(Rig& rig, int count = 1) {
+    for (int k = 0; k < count; ++k) {
+        step_field(rig.model, rig.state, rig.exchange, rig.input, *rig.work);
+        ++rig.state.tick;
+    }
+}
+}  // namespace
+
+TEST(Contact, CurrentFlowsAfterAFrameAndEndsAtOnce) {
     Rig rig = held_rig(1e-2);
     const auto touching = rig.exchange.near;
-    rig.state.tick = 3;
-    rig.solve();
-    expect_off(rig);  // waits for the next refresh
-    rig.state.tick = rig.model.electric.refresh_ticks;
-    rig.solve();
+    const int frame = rig.model.frame_ticks;
+    rig.input.pedal = false;
+    tick(rig, frame);
+    expect_off(rig);
+    EXPECT_EQ(rig.state.field.solved, 1) << "metal touches: the field is ready";
+    rig.input.pedal = true;
+    tick(rig);
+    EXPECT_GT(rig.state.generator.power_W, 0.0) << "in the tick in which the pedal goes down";
+    EXPECT_NEAR(rig.exchange.joule.total_W + rig.exchange.joule.outflow_W, rig.state.generator.power_W, 1e-9);
+    rig.input.pedal = false;
+    tick(rig);
+    expect_off(rig);
+    rig.input.pedal = true;
+    tick(rig);
     EXPECT_GT(rig.state.generator.power_W, 0.0);
-    ++rig.state.tick;
+    rig.input.power_setting_W = 0.0;
+    tick(rig);
+    expect_off(rig);
+    rig.input.power_setting_W = 30.0;
+
+    for (tissue::NearHexel& near : rig.exchange.near) near.bare_gap_m = 1e-3f;  // lifted by a millimetre
+    tick(rig);
+    expect_off(rig);
+    rig.exchange.near = touching;
+    tick(rig);
+    expect_off(rig);  // the old field is no longer that of a contact
+    while (rig.state.tick % frame != 0) tick(rig);
+    tick(rig, frame);
+    EXPECT_GT(rig.state.generator.power_W, 0.0);
+}
+
+// Hexels that go while their field is being solved: no trouble, and no heat for them.
+TEST(Contact, TissueMayGoInTheMiddleOfAFrame) {
+    Rig rig = held_rig(1e-2);
+    for (int frame = 0; frame < 3; ++frame)
+        for (int part = 0; part < rig.model.frame_ticks; ++part) {
+            rig.state.hexel_present.clear(rig.model.hexels.index(22 + frame, 20 + part, 18));
+            tick(rig);
+            ASSERT_TRUE(rig.state.status.ok);
+        }
+    ASSERT_GT(rig.exchange.joule.total_W, 0.0);
+    const tissue::JouleHeat& joule = rig.exchange.joule;
+    for (int part = 0; part < rig.model.frame_ticks; ++part)
+        EXPECT_EQ(joule.density[static_cast<std::size_t>(joule.index({24, 20 + part, 18}))], 0.0f);
+}
+
+// Three iterations a frame follow a tip that goes on by a hexel in each, 75 mm/s.
+TEST(Contact, SpreadSolvesFollowTheTip) {
+    Rig spread = held_rig(1e-2), whole = held_rig(1e-6);
+    double worst = 0.0;
+    for (int frame = 0; frame < 12; ++frame) {
+        for (Rig* rig : {&spread, &whole}) {
+            rig->exchange.near.clear();
+            for (int y = 20; y < 28; ++y) rig->touch({18 + frame, y, 19});
+        }
+        tick(spread, spread.model.frame_ticks);
+        whole.solve();
+        EXPECT_LT(spread.state.field.imbalance, 5e-4) << "V I is heat and outflow, converged or not";
+        if (frame > 0) worst = std::max(worst, std::abs(spread.resistance_Ohm() / whole.resistance_Ohm() - 1.0));
+    }
+    EXPECT_LT(worst, 0.05);
+}
+
+TEST(Contact, ArcsStrikeAcrossAGapInCoagOnly) {
+    Rig rig = held_rig(1e-3);
+    for (tissue::NearHexel& near : rig.exchange.near) near.bare_gap_m = 1.0e-3f;
     rig.solve();
-    EXPECT_GT(rig.state.generator.power_W, 0.0);  // nothing changed, nothing lost
+    expect_off(rig);
+    EXPECT_NEAR(rig.state.generator.voltage_V, rig.model.electric.voltage_limit_V, 1e-9) << "open circuit";
+    rig.input.mode = tissue::GeneratorMode::coag;
+    rig.solve();
+    EXPECT_EQ(rig.state.field.arcs, 16);
+    EXPECT_EQ(rig.state.field.contacts, 0);
+    EXPECT_GT(rig.state.generator.power_W, 1.0);
+    const double through_arcs = rig.state.generator.impedance_Ohm;
+    for (tissue::NearHexel& near : rig.exchange.near) near.bare_gap_m = 0.0f;
+    rig.solve();
+    EXPECT_LT(rig.state.generator.impedance_Ohm, through_arcs) << "an arc has a resistance of its own";
+    for (tissue::NearHexel& near : rig.exchange.near) near.bare_gap_m = 3e-3f;
+    rig.state.generator = {};
+    rig.solve();
+    expect_off(rig);
+}
+
+// Without the pedal nothing burns, whatever the gap.
+TEST(Contact, ArcsGoForTheNearest) {
+    Rig rig = held_rig(1e-3);
+    rig.input.mode = tissue::GeneratorMode::coag;
+    for (std::size_t k = 0; k < rig.exchange.near.size(); ++k)
+        rig.exchange.near[k].bare_gap_m = k < 4 ? 0.5e-3f : 1.2e-3f;
+    rig.solve();
+    EXPECT_EQ(rig.state.field.arcs, 4);
     rig.input.pedal = false;
     rig.solve();
     expect_off(rig);
+    EXPECT_EQ(rig.state.field.solved, 0);
+}
 
-    rig.input.pedal = true;
-    rig.state.tick = 2 * rig.model.electric.refresh_ticks;
+TEST(Contact, CharOnTheTipRaisesImpedance) {
+    Rig rig = held_rig(1e-3);
     rig.solve();
-    EXPECT_GT(rig.state.generator.power_W, 0.0);
-    ++rig.state.tick;
-    for (tissue::NearHexel& near : rig.exchange.near) near.bare_gap_m = 1e-4f;  // lifted by a tenth of a millimetre
+    const double clean = rig.state.generator.impedance_Ohm;
+    rig.state.tip.char_kg = 2e-6;  // a tenth of a millimetre
     rig.solve();
-    expect_off(rig);
-    rig.exchange.near = touching;
-    rig.state.tick = 3 * rig.model.electric.refresh_ticks;
-    rig.input.power_setting_W = 0.0;
-    rig.solve();
-    expect_off(rig);
+    EXPECT_GT(rig.state.generator.impedance_Ohm, 1.005 * clean);
+    EXPECT_LT(rig.state.field.imbalance, 5e-4);
 }
 
 // Metal on a crumb that touches nothing: no load.
@@ -155,6 +301,8 @@ TEST(Contact, LoneHexelIsAnOpenCircuit) {
     expect_off(rig);
 }
 
+constexpr Reach kTouch{0.05e-3, false};
+
 TEST(Window, StaysUntilTheTipLeavesItsMiddle) {
     tissue::Model model = full_box({96, 96, 64}, 0.1);
     tissue::Exchange exchange;
@@ -162,7 +310,7 @@ TEST(Window, StaysUntilTheTipLeavesItsMiddle) {
         exchange.near.assign(1, {});
         exchange.near[0].hexel = model.hexels.index(hexel);
         exchange.near[0].bare_gap_m = 0.0f;
-        return place_window(model, exchange, low).low;
+        return place_window(model, exchange, kTouch, low).low;
     };
     const Int3 low = place({50, 50, 60}, Int3(0));
     EXPECT_EQ(low, Int3(26, 26, 24)) << "48 cells, and not beyond the lattice's 72 in z";
@@ -173,7 +321,7 @@ TEST(Window, StaysUntilTheTipLeavesItsMiddle) {
     exchange.near.assign(1, {});
     exchange.near[0].hexel = small.hexels.index(11, 4, 8);
     exchange.near[0].bare_gap_m = 0.0f;
-    const Window window = place_window(small, exchange, Int3(0));
+    const Window window = place_window(small, exchange, kTouch, Int3(0));
     for (int k = 0; k < 3; ++k) EXPECT_EQ(window.end[k] - window.begin[k], 16);
 }
 

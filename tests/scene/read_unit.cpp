@@ -76,7 +76,9 @@ TEST(Read, CanonicalTextBuildsTheSameSceneToTheLastBit) {
              "[materials.zz_tumour]\nlike = \"fat\"\nyoungs_modulus_kPa = 11.3\nperfusion_ml_per_min_kg = 17.7\n"
              "[materials.another]\nlike = \"zz_tumour\"\npoisson_ratio = 0.33\n"
              "[[script.key]]\nt = 0.1\nroll_deg = 33.3\noffset_mm = [0.1, 0.2, 30.3]\n"
-             "[[script.burst]]\nfrom = 0.3\nto = 0.7\npower_W = 12.34\nmode = \"coag\"\n");
+             "[[script.burst]]\nfrom = 0.3\nto = 0.7\npower_W = 12.34\nmode = \"coag\"\n"
+             "[[script.burst]]\nfrom = 0.8\nto = 0.9\npreset = \"coag 55\"\n"
+             "[[script.burst]]\nfrom = 0.91\nto = 0.95\npower_W = 20.0\npreset = \"blend 35\"\n");
     const std::string first = text(scene);
     const Scene again = read(first);
     EXPECT_EQ(text(again), first);
@@ -89,6 +91,10 @@ TEST(Read, CanonicalTextBuildsTheSameSceneToTheLastBit) {
     EXPECT_EQ(again.materials[tumour].perfusion_m3_per_s_kg, scene.materials[tumour].perfusion_m3_per_s_kg);
     EXPECT_EQ(again.materials[tumour].electric_conductivity_S_per_m, scene.materials[1].electric_conductivity_S_per_m);
     EXPECT_EQ(again.bursts[0].burst.mode, tissue::GeneratorMode::coag);
+    EXPECT_EQ(again.bursts[1].burst.mode, tissue::GeneratorMode::coag);
+    EXPECT_EQ(again.bursts[1].burst.power_W, 55.0);
+    EXPECT_EQ(again.bursts[2].burst.mode, tissue::GeneratorMode::blend) << "the preset's";
+    EXPECT_EQ(again.bursts[2].burst.power_W, 20.0) << "overrides the preset's";
 }
 
 TEST(Read, TellsEveryMistakeWithItsLine) {

@@ -1,0 +1,53 @@
+#pragma once
+// Where current enters the tissue: through hexels that bare metal touches, and by arcs.
+//
+//       metal, 1 V                      touches: bare gap <= contact gap       arc: gap <= reach
+//      ----------------                 g = 1 / (1/g_char + 1/g_half)          g = 1 / (s R_arc + 1/g_half)
+//       char     | g_char
+//      ----------                       g_half = 2 sigma times the exposed faces that look at the metal
+//       hexel    | g_half
+//          o centre: unknown
+//
+// An arc strikes when the peak voltage exceeds a threshold of about 200 V, below which none burns between metal and
+// tissue (Palanker et al. 2008, doi 10.1109/TBME.2007.906502, and manufacturers: "cutting needs 200 V peak"), plus the
+// strength of the gas times the gap. Carbon dioxide at atmospheric pressure holds 2.6 kV/mm (0.88 of air's 3 kV/mm). It
+// goes for what is nearest. Tissue that has dried at the metal is burnt through by arcs: there, conductivity is at
+// least that of a hexel full of arcs. An arc's resistance is chosen: some hundred volts at some tenths of an ampere.
+
+#include <cstdint>
+#include <vector>
+
+#include "calot/base/vec.h"
+#include "calot/electric/window.h"
+#include "calot/tissue/exchange.h"
+#include "calot/tissue/input.h"
+#include "calot/tissue/state.h"
+
+namespace calot::electric {
+
+/// A hexel that current enters.
+struct Entry {
+    std::int32_t cell = 0;  ///< of the finest level
+    float g = 0.0f;         ///< from the metal to its centre, S/m
+};
+
+/// How far arcs reach at a peak voltage [m]; at most the contact gap when none burn.
+double arc_reach_m(const tissue::ElectricParameters& parameters, double peak_voltage_V);
+
+/// Peak voltage that the generator offers now: its limit when nothing flows, else the present one; 0 without pedal.
+double offered_peak_V(const tissue::Model& model, const tissue::State& state, const tissue::Input& input);
+
+/// What current enters at present: the bare gap up to which hexels count, and whether arcs burn.
+struct Reach {
+    double gap_m = 0.0;
+    bool arcs = false;
+};
+Reach find_reach(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
+                 const tissue::Input& input);
+/// Whether a near hexel is that close.
+inline bool reaches(const Reach& reach, const tissue::NearHexel& near) {
+    return static_cast<double>(near.bare_gap_m) <= reach.gap_m;
+}
+bool any_reached(const Reach& reach, const tissue::Exchange& exchange);
+
+}  // namespace calot::electric
