@@ -88,13 +88,13 @@ void begin_step(const tissue::Model& model, tissue::State& state, const tissue::
     work.fallen = state.hexels_fallen;
 }
 
-/// Sets Work::turn: blocks of slice `slice` that take part, or rest for the first time.
+/// Sets Work::turn: blocks of slice `slice` that take part, or rest for the first time. A slice takes every fourth
+/// stretch of 64 blocks: long enough for memory to be read ahead, short enough for the hot region to be shared out.
 void take_turns(Work& work, int slice) {
     work.turn.clear();
-    std::uint64_t mask = 0;  // bits b with b % slices = slice; slices divides 64
-    for (int b = slice; b < 64; b += work.slices) mask |= std::uint64_t{1} << b;
-    for (std::size_t k = 0; k < work.active.words(); ++k)
-        for (std::uint64_t bits = (work.active.word(k) | work.heated.word(k)) & mask; bits != 0; bits &= bits - 1)
+    const auto slices = static_cast<std::size_t>(work.slices);
+    for (auto k = static_cast<std::size_t>(slice); k < work.active.words(); k += slices)
+        for (std::uint64_t bits = work.active.word(k) | work.heated.word(k); bits != 0; bits &= bits - 1)
             work.turn.push_back(static_cast<std::int32_t>(64 * k + static_cast<std::size_t>(__builtin_ctzll(bits))));
 }
 
@@ -239,7 +239,6 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     const Lattice& lattice = model.hexels;
     const auto cells = static_cast<std::size_t>(lattice.cells);
     const std::int64_t blocks = block_count(lattice);
-    assert(64 % model.thermal.refresh_ticks == 0);
     Work work;
     work.properties = Properties::make(model);
     work.group_material = group_materials(model);

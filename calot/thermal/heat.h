@@ -6,7 +6,7 @@
 //
 //     tick     0                                1               2              3
 //     begin: warm blocks --dilate--> active     .               .              .
-//     blocks b % 4 = 0                          b % 4 = 1       b % 4 = 2      b % 4 = 3
+//     blocks with b/64 % 4 = 0                  1               2              3
 //                                                                              finish: which hexels are gas now
 //     a quarter of the hexels that are gas      a quarter       a quarter      (of the next) a quarter
 //
