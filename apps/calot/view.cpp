@@ -74,7 +74,9 @@ int view(const ViewOptions& options) {
     trainer.exercises = training_exercises(options.data, options.trainee, trouble);
     if (!trouble.empty()) fmt::print(stderr, "calot: note: sessions will not be stored: {}\n", trouble);
     if (!options.haptics.empty()) {
-        haptics::make_device(haptics::DeviceChoice{.kind = options.haptics});  // told before a window opens
+        haptics::DeviceChoice choice;
+        choice.kind = options.haptics;
+        haptics::make_device(choice);  // what is wrong is told before a window opens
         trainer.make_device = [&options](const simulation::Setup& setup) { return make_device(options, setup); };
     }
     trainer.start = options.start;
