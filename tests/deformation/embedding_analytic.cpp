@@ -35,8 +35,7 @@ struct Body {
         : model(tissue::sample(anatomy::make_block({.size_m = Vec3(0.0192, 0.0144, 0.0096), .held_below = held}), {})) {
         state = tissue::State::make(model);
         sever_initial_links(model, state);
-        initialise_topology(model, state, work);
-        for (auto& g : work.gradient) g.assign(static_cast<std::size_t>(model.phyxels.cells), 0.0f);
+        work = make_work(model, state);
         Random random(7);
         const double s = model.hexels.spacing_m;
         for (std::int64_t h = model.hexels.first; h < model.hexels.last; ++h)
@@ -72,6 +71,13 @@ struct Body {
         for (auto& links : state.links)
             for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p)
                 if (random.uniform() < share) links.clear(p);
+        refresh();
+    }
+    /// After links were changed by hand; gradients stay as they were given.
+    void refresh() {
+        const auto gradient = work.gradient;
+        work = make_work(model, state);
+        work.gradient = gradient;
     }
 };
 
@@ -191,6 +197,7 @@ TEST(Embedding, StencilStaysOnItsSideOfACut) {
     for (std::size_t d = 0; d < tissue::kLinkDirections.size(); ++d)
         for (std::int64_t p = phyxels.first; p < phyxels.last; ++p)
             if (tissue::kLinkDirections[d].x == 1 && phyxels.coordinates(p).x == cut - 1) body.state.links[d].clear(p);
+    body.refresh();
     for (std::size_t k = 0; k < body.rest_m.size(); ++k) {
         const Stencil stencil = embedding_stencil(body.model, body.state, body.work, body.owner[k], body.rest_m[k]);
         const bool left = body.model.hexels.coordinates(body.owner[k]).x / 4 < cut;
@@ -280,9 +287,7 @@ TEST(FindNear, KeepsTheNearestAtCapacity) {
     const tissue::Model model =
         tissue::sample(anatomy::make_block({.size_m = Vec3(0.06, 0.06, 0.0048), .held_below = false}), {});
     tissue::State state = tissue::State::make(model);
-    Work work;
-    initialise_topology(model, state, work);
-    for (auto& g : work.gradient) g.assign(static_cast<std::size_t>(model.phyxels.cells), 0.0f);
+    const Work work = make_work(model, state);
     tissue::Exchange exchange;
     tissue::reserve_exchange(model, exchange);
     exchange.capsules.push_back({.a_m = Vec3(0.0, 0.0, 0.0), .b_m = Vec3(0.001, 0.0, 0.0), .radius_m = 5e-4});
