@@ -30,8 +30,7 @@ void tear_overstretched(const tissue::Model& model, tissue::State& state, tissue
     const double stretch = model.deformation.tear_stretch;
     const auto limit = static_cast<float>(stretch * stretch + 2.0 / stretch);
     const auto& words = state.phyxel_present.words();
-    for (auto w = static_cast<std::size_t>(state.tick % kTearTicks); 64 * w + 64 <= work.gradient[0].size();
-         w += kTearTicks) {
+    for (std::size_t w = 0; 64 * w + 64 <= work.gradient[0].size(); ++w) {
         if (words[w] == 0) continue;
         const std::array<float, 64> sum = squared_stretches(work, 64 * w);
         for (std::uint64_t rest = words[w]; rest != 0; rest &= rest - 1) {
