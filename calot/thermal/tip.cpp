@@ -13,7 +13,6 @@ constexpr double kSteelSpecificHeat_J_per_kgK = 500.0;
 constexpr double kSteelConductivity_W_per_mK = 16.2;
 // Char of wood and of proteins conducts 0.05 to 0.15 W/(m K) (SFPE Handbook of Fire Protection Engineering).
 constexpr double kCharConductivity_W_per_mK = 0.1;
-constexpr double kCharDensity_kg_per_m3 = 400.0;
 
 bool touches(const tissue::Model& model, const tissue::NearHexel& near) {
     return near.bare_gap_m <= static_cast<float>(model.electric.contact_gap_m);
@@ -59,7 +58,8 @@ void exchange_with_tip(const tissue::Model& model, tissue::State& state, const t
         touched += touches(model, near) && state.hexel_present.test(near.hexel) ? 1 : 0;
     // Together they cannot touch more of the wire than there is.
     const double area = std::min(s * s, wire.area_m2 / static_cast<double>(std::max<std::int64_t>(touched, 1)));
-    const double film = tip.char_kg / (kCharDensity_kg_per_m3 * wire.area_m2) / kCharConductivity_W_per_mK;
+    const double film =
+        tip.char_kg / (model.electric.char_density_kg_per_m3 * wire.area_m2) / kCharConductivity_W_per_mK;
     double taken_J = 0.0;
     for (const tissue::NearHexel& near : exchange.near) {
         if (!touches(model, near) || !state.hexel_present.test(near.hexel)) continue;
