@@ -19,7 +19,7 @@ constexpr const char* kBenchStyle = R"css(
 .bar b{font-weight:500;font-size:14px;font-variant-numeric:tabular-nums}
 circle{stroke:var(--card);stroke-width:1.2}svg .s{text-anchor:start}
 .wide{max-width:none}.wide td:not(:first-child),.wide th:not(:first-child){text-align:right}
-.wide td,.wide th{padding-right:10px}.worst td:first-child{white-space:nowrap}.plots .scroll{align-self:center}.scroll{overflow-x:auto}.wide td:last-child.left,.wide th:last-child.left{text-align:left}
+.wide td,.wide th{padding-right:10px}.worst td:first-child{white-space:nowrap}.plots .scroll{align-self:center}.columns table{align-self:start}.plot figcaption i{white-space:nowrap;display:inline-block}.scroll{overflow-x:auto}.wide td:last-child.left,.wide th:last-child.left{text-align:left}
 .keys{display:flex;flex-wrap:wrap;gap:4px 22px;color:var(--soft);font-size:14px;margin:6px 0 2px}
 .keys i{font-style:normal}.keys i::before{content:"";display:inline-block;width:11px;height:11px;border-radius:3px;background:var(--c);margin-right:6px}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,255px),1fr));gap:14px;margin:12px 0 24px}

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bench_bodies.h"
+#include "bench_html.h"
 #include "bench_pictures.h"
 #include "bench_statistics.h"
 #include "bench_suites.h"
@@ -86,7 +87,8 @@ void table_2(const Density& density, const BenchPlan& plan, BenchResults& result
     }
     add_rows(density, hexels, sum_us, ticks, results);
     results.notes.push_back(fmt::format("Table 2: {} hexels on {} phyxels stand for the paper's {} hexels on 3,041",
-                                        hexels, phyxels, density.hexels));
+                                        grouped_number(hexels), grouped_number(phyxels),
+                                        grouped_number(density.hexels)));
 }
 
 /// The same until 100 hexels are gone, for the picture.
@@ -104,6 +106,9 @@ void figure_15(const Density& density, const BenchPlan& plan, BenchResults& resu
             !report(static_cast<double>(run.state().hexels_burnt) / static_cast<double>(kBurntHexels)))
             return;
     }
+    if (!run.state().status.ok)
+        results.notes.push_back(fmt::format("Fig. 15: with {} hexels the run stopped at {:.2f} s: {} is not finite",
+                                            grouped_number(hexels), run.time_s(), run.state().status.field));
     Camera camera(kPictureWidth, kPictureHeight);
     viewer::Picture picture(*setup);
     render::View view;
@@ -114,8 +119,8 @@ void figure_15(const Density& density, const BenchPlan& plan, BenchResults& resu
     view.smoke.clear();
     const double volume_mm3 = static_cast<double>(run.state().hexels_burnt) * run.model().hexel_volume_m3() * 1e9;
     camera.take(view, "Fig. 15",
-                fmt::format("{} hexels; {} of them burnt ({:.2f} mm³) after {:.1f} s", hexels, run.state().hexels_burnt,
-                            volume_mm3, run.time_s()),
+                fmt::format("{} hexels; {} of them burnt ({:.2f} mm³) after {:.1f} s", grouped_number(hexels),
+                            run.state().hexels_burnt, volume_mm3, run.time_s()),
                 results.pictures);
     if (!camera.trouble().empty()) results.notes.push_back(camera.trouble());
 }

@@ -14,8 +14,8 @@ namespace calot::app {
 class Camera {
   public:
     Camera(int width, int height);
-    /// Draws what `view` holds; adds it to `pictures`.
-    void take(const render::View& view, const std::string& figure, const std::string& caption,
+    /// Draws what `view` holds, from closer; adds it to `pictures`.
+    void take(render::View& view, const std::string& figure, const std::string& caption,
               std::vector<Picture64>& pictures);
     const std::string& trouble() const { return trouble_; }
 

@@ -13,9 +13,14 @@
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,6 +35,26 @@ namespace {
 
 constexpr double kYoung_Pa = 5000.0, kPoisson = 0.45, kDensity = 911.0, kSpacing_m = 2.4e-3;
 constexpr int kX = 13, kY = 13, kZ = 18;  ///< nodes: 3042
+
+/// The standard output goes nowhere while this lives.
+class Silence {
+  public:
+    Silence() {
+        std::fflush(stdout);
+        kept_ = ::dup(STDOUT_FILENO);
+        const int nowhere = ::open("/dev/null", O_WRONLY);
+        ::dup2(nowhere, STDOUT_FILENO);
+        ::close(nowhere);
+    }
+    ~Silence() {
+        std::fflush(stdout);
+        ::dup2(kept_, STDOUT_FILENO);
+        ::close(kept_);
+    }
+
+  private:
+    int kept_ = -1;
+};
 
 /// A block of tetrahedra, its lowest layer fixed. Bullet likes bodies of about a metre: lengths are in millimetres,
 /// masses in grams, times in seconds, so that forces are in micronewtons and pressures in pascals.
@@ -88,9 +113,11 @@ class BulletBlock {
                             const int corner = (x + y + z) % 2 == 0 ? t[k] : t[k] ^ 1;
                             at[k] = ((z + (corner >> 2)) * kY + y + ((corner >> 1) & 1)) * kX + x + (corner & 1);
                         }
+                        if ((x + y + z) % 2 != 0) std::swap(at[0], at[1]);  // the mirror turns them inside out
                         tetrahedra += fmt::format("{} {} {} {} {}\n", number++, at[0], at[1], at[2], at[3]);
                     }
         const std::string elements = fmt::format("{} 4 0\n", number) + tetrahedra;
+        const Silence silence;  // Bullet tells counts
         btSoftBody* body = btSoftBodyHelpers::CreateFromTetGenData(world_.getWorldInfo(), elements.c_str(), nullptr,
                                                                    nodes.c_str(), false, false, false);
         const double volume_mm3 = 1e9 * std::pow(kSpacing_m, 3.0) * (kX - 1) * (kY - 1) * (kZ - 1);

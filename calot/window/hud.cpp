@@ -66,6 +66,10 @@ void draw_generator(const Gui& gui, const Language& text, const HudContent& cont
         pedal_box(gui, text("generator.coag").c_str(), content.settings.coag_W, colour::kBlue, coagulating, half);
         const tissue::GeneratorState& g = shot.generator;
         line(text("generator.power"), fmt::format("{:.1f} W", g.power_W));
+        if (shot.input.pedal && g.limit >= 0 && g.limit <= 3)  // what the generator is up against
+            line(text("generator.limit"), text("generator.limit." + std::to_string(g.limit)));
+        else
+            line(text("generator.limit"), "\xe2\x80\x93");
         line(text("generator.voltage"), fmt::format("{:.0f} V", g.voltage_V));
         line(text("generator.current"), fmt::format("{:.0f} mA", 1e3 * g.current_A));
         line(text("generator.impedance"), g.impedance_Ohm > 0.0 && shot.input.pedal

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "calot/tissue/input.h"
 #include "calot/viewer/quality.h"
 
 namespace calot::window {
@@ -144,6 +145,34 @@ bool slider(const Gui& gui, const std::string& name, double& value, float low, f
     return changed;
 }
 
+/// Settings that surgeons know by their names, a click each.
+bool choose_preset(const Gui& gui, const Language& text, Settings& settings) {
+    bool changed = false;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextColored(colour::kFaint, "%s", text("settings.presets").c_str());
+    float at = 250.0f * gui.unit();
+    const float width = (ImGui::GetWindowWidth() - at - ImGui::GetStyle().WindowPadding.x) /
+                            static_cast<float>(tissue::kGeneratorPresets.size()) -
+                        4.0f * gui.unit();
+    ImGui::PushFont(gui.fonts().small);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f, ImGui::GetStyle().FramePadding.y));
+    for (const tissue::GeneratorPreset& preset : tissue::kGeneratorPresets) {
+        ImGui::SameLine(at);
+        at += width + 4.0f * gui.unit();
+        if (!ImGui::Button(preset.name, ImVec2(width, 0.0f))) continue;
+        changed = true;
+        if (preset.mode == tissue::GeneratorMode::coag) {
+            settings.coag_W = preset.power_W;
+        } else {
+            settings.cut_W = preset.power_W;
+            settings.blended_cut = preset.mode == tissue::GeneratorMode::blend;
+        }
+    }
+    ImGui::PopStyleVar();
+    ImGui::PopFont();
+    return changed;
+}
+
 bool choose_language(const Gui& gui, const Language& text, const std::vector<std::string>& languages,
                      Settings& settings) {
     bool changed = false;
@@ -191,6 +220,7 @@ bool draw_settings(const Gui& gui, const Language& text, const std::vector<std::
         heading(gui, text("settings.title"));
         changed |= choose_language(gui, text, languages, settings);
         changed |= choose_tier(gui, text, tier_now, settings);
+        changed |= choose_preset(gui, text, settings);
         changed |= slider(gui, text("settings.cut"), settings.cut_W, 5.0f, 100.0f, "%.0f W");
         changed |= slider(gui, text("settings.coag"), settings.coag_W, 5.0f, 80.0f, "%.0f W");
         changed |= ImGui::Checkbox(text("settings.blend").c_str(), &settings.blended_cut);

@@ -179,8 +179,8 @@ TEST_F(Trainer, start_practice_burn_pause_and_quit) {
     Person::pause(900);
     const Shot cutting = person.look();
     run_tool({"xdotool", "mouseup", "1"});
-    const Colour dark = practice.mean(40, kHeight - 225, 150, kHeight - 195);
-    const Colour lit = cutting.mean(40, kHeight - 225, 150, kHeight - 195);
+    const Colour dark = practice.mean(40, kHeight - 254, 150, kHeight - 224);
+    const Colour lit = cutting.mean(40, kHeight - 254, 150, kHeight - 224);
     EXPECT_GT(lit.r, dark.r + 0.3);
     EXPECT_GT(lit.g, dark.g + 0.2);
     EXPECT_LT(lit.b, 0.45);
