@@ -20,6 +20,7 @@ tissue::Material tissue_named(const char* name) {
     const auto materials = tissue::default_materials();
     tissue::Material m = materials[tissue::find_material(materials, name)];
     m.perfusion_m3_per_s_kg = 0.0;
+    m.vessel_transfer_W_per_m3K = 0.0;
     return m;
 }
 

@@ -20,11 +20,6 @@ const std::map<std::string, double> kShort{
     {"torsion of a square bar", 0.075},
     {"indentation by a rigid ball", 0.1},
     {"sphere with surface exchange", 0.14},
-    {"disc electrode on a half-space", 0.13},
-    {"buried sphere electrode", 0.11},
-    {"cut removes more than coag", 0.06},
-    {"coag spreads more than cut", 0.06},
-    {"drying raises the impedance", 0.6},
 };
 
 const std::string kScenes = CALOT_SOURCE_DIR "/scenes/validation";
