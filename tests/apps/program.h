@@ -126,6 +126,8 @@ window_cells = 16
 voltage_limit_V = 1000
 [materials.fat]
 removal_temperature_C = 120
+water_mass_fraction = 0.05
+electric_conductivity_S_per_m = 0.1
 solid_latent_heat_J_per_kg = 1e4
 [picture]
 width = 96
@@ -140,11 +142,11 @@ t = 0
 offset_mm = [0, 0, 0.6]
 [[script.key]]
 t = 0.02
-offset_mm = [0, 0, -0.4]
+offset_mm = [0, 0, -0.8]
 [[script.burst]]
 from = 0.01
 to = 0.06
-power_W = 60
+power_W = 120
 )";
 
 }  // namespace calot::test
