@@ -170,26 +170,24 @@ TEST_F(Trainer, start_practice_burn_pause_and_quit) {
 
     // The hook follows the mouse.
     run_tool({"xdotool", "mousemove_relative", "--", "-110", "70"});
-    Person::pause(900);
-    const Shot moved = person.look();
-    EXPECT_GT(moved.changed(practice, 330, 100, kWidth - 100, kHeight - 60), 0.004);
+    EXPECT_TRUE(
+        Person::wait([&] { return person.look().changed(practice, 330, 100, kWidth - 100, kHeight - 60) > 0.004; }));
 
     // The yellow pedal lights the yellow half of the generator.
     run_tool({"xdotool", "mousedown", "1"});
-    Person::pause(900);
-    const Shot cutting = person.look();
-    run_tool({"xdotool", "mouseup", "1"});
     const Colour dark = practice.mean(40, kHeight - 254, 150, kHeight - 224);
-    const Colour lit = cutting.mean(40, kHeight - 254, 150, kHeight - 224);
-    EXPECT_GT(lit.r, dark.r + 0.3);
-    EXPECT_GT(lit.g, dark.g + 0.2);
-    EXPECT_LT(lit.b, 0.45);
+    EXPECT_TRUE(Person::wait([&] {
+        const Colour lit = person.look().mean(40, kHeight - 254, 150, kHeight - 224);
+        return lit.r > dark.r + 0.3 && lit.g > dark.g + 0.2 && lit.b < 0.45;
+    }));
+    run_tool({"xdotool", "mouseup", "1"});
 
     person.key("Escape");
-    Person::pause(600);
-    const Shot paused = person.look();
-    EXPECT_LT(paused.mean(kWidth / 2 - 200, kHeight / 2 - 150, kWidth / 2 + 200, kHeight / 2 + 150).luma(), 0.25);
-    EXPECT_GT(paused.changed(practice, kWidth / 2 - 200, kHeight / 2 - 150, kWidth / 2 + 200, kHeight / 2 + 150), 0.5);
+    EXPECT_TRUE(Person::wait([&] {  // a panel over the middle
+        const Shot paused = person.look();
+        return paused.mean(kWidth / 2 - 200, kHeight / 2 - 150, kWidth / 2 + 200, kHeight / 2 + 150).luma() < 0.25 &&
+               paused.changed(practice, kWidth / 2 - 200, kHeight / 2 - 150, kWidth / 2 + 200, kHeight / 2 + 150) > 0.5;
+    }));
     person.click(kWidth / 2, kHeight / 2 + 180);  // the last button: quit
     const auto outcome = person.ended();
     EXPECT_EQ(outcome.code, 0) << outcome.output;
@@ -202,10 +200,10 @@ TEST_F(Trainer, help_covers_and_goes_away_in_another_language) {
     ASSERT_TRUE(person.window_opened());
     ASSERT_TRUE(Person::wait([&] { return shows_tissue(person.look()); }));
     person.key("F1");
-    Person::pause(700);
-    const Shot help = person.look();
-    EXPECT_FALSE(shows_tissue(help));
-    EXPECT_GT(help.share_brighter(0.55, 40, 40, kWidth - 40, kHeight - 40), 0.005);  // much text
+    EXPECT_TRUE(Person::wait([&] {  // much text, and no tissue
+        const Shot help = person.look();
+        return !shows_tissue(help) && help.share_brighter(0.55, 40, 40, kWidth - 40, kHeight - 40) > 0.005;
+    }));
     person.key("F1");
     EXPECT_TRUE(Person::wait([&] { return shows_tissue(person.look()); }));
 }
