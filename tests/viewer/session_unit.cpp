@@ -68,6 +68,21 @@ TEST(SessionCore, hook_follows_the_mouse_and_pedals_reach_the_generator) {
     EXPECT_FALSE(after.view.instrument.empty());
 }
 
+TEST(SessionCore, left_hand_closes_the_grasper) {
+    SessionCore core(test::small_run(), {});
+    Mapping mapping(core.theatre());
+    Scope scope(core.run().setup().camera);
+    for (int tick = 0; tick < 50; ++tick) core.tick(mapping.controls());
+    EXPECT_EQ(core.run().state().grasper.present, 1);
+    const double open = core.run().state().grasper.jaw;
+    Devices devices;
+    devices.grasp_toggled = true;
+    mapping.apply(devices, 1e-3, scope);
+    for (int tick = 0; tick < 300; ++tick) core.tick(mapping.controls());
+    EXPECT_GT(open, 0.5);
+    EXPECT_LT(core.run().state().grasper.jaw, 0.05);
+}
+
 TEST(Session, runs_pauses_and_stops) {
     auto counter = std::make_shared<Counter>();
     SessionOptions options;
