@@ -7,6 +7,8 @@ namespace calot::render {
 
 namespace {
 
+constexpr double kJaw_m = 2e-3;  ///< thinner pieces of the grasper are its jaws: bare steel
+
 constexpr int kSides = 24;
 constexpr double kBendInRadii = 2.4;     ///< radius of the bend's middle line
 constexpr double kJoined_m = 1e-5;       ///< ends closer than this are one joint
@@ -94,7 +96,10 @@ struct Piece {
 
 /// Takes capsules that share ends and have about the same radius out of `left`, in order along the chain.
 std::vector<Piece> take_chain(std::vector<tissue::Capsule>& left) {
-    auto piece = [](const tissue::Capsule& c) { return Piece{c.a_m, c.b_m, c.radius_m, c.bare}; };
+    auto piece = [](const tissue::Capsule& c) {
+        return Piece{c.a_m, c.b_m, c.radius_m,
+                     c.bare || (c.instrument == tissue::Instrument::grasper && c.radius_m < kJaw_m)};
+    };
     std::vector<Piece> chain{piece(left.front())};
     left.erase(left.begin());
     for (bool grown = true; grown;) {

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "calot/instruments/grasper.h"
+
 namespace calot::viewer {
 
 namespace {
 
+constexpr double kJawTime_s = 0.25;      ///< from wide open to closed
+constexpr double kJawOpen = 0.7;         ///< as far as the trainee opens them
 constexpr double kBoilingTime_s = 0.08;  ///< over which the sizzle is averaged
 
 Vec3 landmark_or(const anatomy::Anatomy& anatomy, const char* name, const Vec3& otherwise) {
@@ -25,6 +29,7 @@ Theatre theatre_of(const simulation::Setup& setup) {
     const Vec3 across = theatre.right.port_m - centre_m;
     theatre.left.port_m =
         landmark_or(setup.anatomy, "grasper_trocar", centre_m + Vec3(-across.x, 0.6 * across.y, across.z));
+    if (glm::length(setup.grasper_trocar_m) > 0.0) theatre.left.port_m = setup.grasper_trocar_m;
     const auto& keys = setup.script.keyframes();
     if (!keys.empty()) theatre.right_start.roll_rad = keys.front().roll_rad;
     // Both tips in sight, clear of the tissue: a third of the way from it to the lens.
@@ -60,6 +65,15 @@ tissue::Input SessionCore::input_for(const Controls& controls) {
                    run_->state().hook_force_N, dt_s);
     tissue::Input input;
     input.hook = right_.pose(theatre_.right.port_m, run_->setup().hook);
+    left_.advance({within_reach(controls.left.tip_m, theatre_.left), controls.left.roll_rad, controls.left.closed},
+                  run_->state().grasper.force_N, dt_s);
+    // Jaws take a moment to open and close, so that tissue is not hit by them.
+    const double wanted = controls.left.closed ? 0.0 : kJawOpen;
+    jaw_ += std::clamp(wanted - jaw_, -dt_s / kJawTime_s, dt_s / kJawTime_s);
+    input.grasper.present = true;
+    input.grasper.pose =
+        instruments::grasper_pose_through_trocar(theatre_.left.port_m, left_.tip_m(), left_.roll_rad());
+    input.grasper.jaw = jaw_;
     // Both pedals at once: cutting wins, as on generators.
     input.pedal = controls.yellow || controls.blue;
     input.mode = controls.yellow ? (controls.blended_cut ? tissue::GeneratorMode::blend : tissue::GeneratorMode::cut)

@@ -54,6 +54,7 @@ class SessionCore {
     std::vector<std::shared_ptr<Observer>> observers_;
     Theatre theatre_;
     HeldInstrument right_, left_;
+    double jaw_ = 0.7;  ///< of the grasper, 0 closed ... 1 wide open
     std::shared_ptr<haptics::Session> device_;
     Picture picture_;
     tissue::Input input_;
