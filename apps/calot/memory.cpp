@@ -36,7 +36,7 @@ std::int64_t bytes_made(const Make& make) {
 }
 
 std::int64_t phyxel_bytes(const tissue::Model& model, const tissue::State& state, std::int64_t& of_model) {
-    of_model = bytes_of(model.phyxel_initial) + bytes_of(model.phyxel_ghost) + bytes_of(model.phyxel_mass_scale);
+    of_model = bytes_of(model.phyxel_initial) + bytes_of(model.phyxel_ghost);
     std::int64_t of_state = bytes_of(state.phyxel_present);
     for (const auto& bits : state.links) of_state += bytes_of(bits);
     for (const auto& component : state.displacement_m) of_state += bytes_of(component);

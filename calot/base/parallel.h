@@ -8,6 +8,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 namespace calot {
@@ -37,6 +38,17 @@ void parallel_for([[maybe_unused]] const char* name, std::int64_t begin, std::in
         return;
     }
     tbb::parallel_for(std::int64_t{0}, chunks, run_chunk, tbb::simple_partitioner{});
+}
+
+/// Calls both, at the same time if a thread is free; one may not touch what the other writes.
+template <class First, class Second>
+void parallel_pair([[maybe_unused]] const char* name, const First& first, const Second& second) {
+    if (tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) == 1) {
+        first();
+        second();
+        return;
+    }
+    tbb::parallel_invoke(first, second);
 }
 
 /// Sum of body(begin, end) over the chunks, added in the order of the chunks: the same bytes for any number of

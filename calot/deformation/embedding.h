@@ -26,7 +26,7 @@ void embed_points(const tissue::Model& model, const tissue::State& state, const 
 /// Fills Exchange::near with the surface hexels (present, with a face neighbour that is neither present nor held) whose
 /// world position lies within `reach_m` of any capsule in Exchange::capsules, in the order of their cells. Never more
 /// than the capacity reserved (reserve_exchange): beyond it the nearest are kept.
-void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
+void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, Work& work,
                double reach_m);
 
 /// The phyxels that carry a material point and their weights phi_j >= 0. Weights sum to 1; count 0: nothing carries it.

@@ -10,6 +10,7 @@
 #include "calot/deformation/kernel.h"
 #include "calot/deformation/law.h"
 #include "calot/deformation/links.h"
+#include "calot/deformation/stable_mass.h"
 
 namespace calot::deformation {
 
@@ -26,7 +27,7 @@ constexpr std::int64_t kOneTask = 512;
 
 using Sweep = void (*)(const KernelView&, Groups);
 
-void run(const char* name, Sweep sweep, const KernelView& view, const Work& work) {
+void run(const char* name, Sweep sweep, const KernelView& view, Work& work) {
     const Groups groups(work.groups);
     const auto count = static_cast<std::int64_t>(groups.size());
     parallel_for(name, 0, count, count <= kOneTask ? kOneTask : kChunk, [&](std::int64_t low, std::int64_t high) {
@@ -104,6 +105,10 @@ KernelView KernelView::make(const Model& model, State& state, Work& work) {
         view.offset[e] = model.phyxels.offset(tissue::kLinkDirections[e]);
     }
     for (std::size_t e = 0; e < 6; ++e) view.moment_inverse[e] = work.moment_inverse[e].data();
+    view.stiffening = work.stiffening.data();
+    const double stretch = model.deformation.tear_stretch;
+    // Uniaxial stretch of incompressible tissue: lambda along, 1 / sqrt(lambda) across.
+    view.most_squared_stretch = static_cast<float>(stretch * stretch + 2.0 / stretch);
     view.volume_m3 = work.volume_m3.data();
     view.inverse_mass_per_kg = work.inverse_mass_per_kg.data();
     view.gravity_share = work.gravity_share.data();
@@ -143,9 +148,9 @@ void update_gradients_about(const Model& model, const State& state, Work& work,
     }
 }
 
-void integrate(const Model& model, State& state, tissue::Exchange& exchange, Work& work) {
+void advance(const Model& model, State& state, tissue::Exchange& exchange, Work& work) {
     exchange.contact_force_N = exchange.grasper_contact_force_N = Vec3(0.0);
-    if (!state.status.ok) return;
+    raise_masses(model, state, work);
     prepare_contacts(model, state, exchange, work);
     const KernelView view = KernelView::make(model, state, work);
     KernelView within_tick = view;
@@ -164,7 +169,17 @@ void integrate(const Model& model, State& state, tissue::Exchange& exchange, Wor
     exchange.grasper_contact_force_N = work.contact.impulse_Ns[1] / -model.tick_s;
     slip_held(state, exchange, work.contact);
     remember_contacts(state, work);
-    if (!all_finite(state, work)) state.status = {false, "displacement_m", first_bad_cell(model, state), state.tick};
+}
+
+void check(const Model& model, State& state, const Work& work) {
+    if (state.status.ok && !all_finite(state, work))
+        state.status = {false, "displacement_m", first_bad_cell(model, state), state.tick};
+}
+
+void integrate(const Model& model, State& state, tissue::Exchange& exchange, Work& work) {
+    if (!state.status.ok) return;
+    advance(model, state, exchange, work);
+    check(model, state, work);
 }
 
 double elastic_energy_J(const Model& model, const State& state, const Work& work) {

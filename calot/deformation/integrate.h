@@ -11,8 +11,12 @@
 namespace calot::deformation {
 
 /// Advances displacement and velocity by one tick under elastic, hourglass, gravity and contact forces. Reads
-/// Exchange::near and ::contacts, writes Exchange::contact_force_N. Leaves Work::gradient current. Sets State::status
-/// when a displacement is no longer finite.
+/// Exchange::near and ::contacts, writes Exchange::contact_force_N. Leaves Work::gradient current. Neither reads nor
+/// writes what heat and current do, so that both can be worked out at the same time.
+void advance(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
+/// Sets State::status when a displacement is no longer finite.
+void check(const tissue::Model& model, tissue::State& state, const Work& work);
+/// Both, unless State::status is not ok.
 void integrate(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
 /// Recomputes rest properties of one phyxel (moment, volume, constants, hourglass, mass), of the ghosts beside it and
@@ -33,7 +37,7 @@ void update_gradients_about(const tissue::Model& model, const tissue::State& sta
 double elastic_energy_J(const tissue::Model& model, const tissue::State& state, const Work& work);
 double kinetic_energy_J(const tissue::Model& model, const tissue::State& state, const Work& work);
 
-/// Mass that moves beyond that of the tissue [kg]: floors, Model::phyxel_mass_scale and what the time step needs
+/// Mass that moves beyond that of the tissue [kg]: floors and what the time step needs
 /// (stable_mass.h). It has inertia but no weight.
 double added_mass_kg(const Work& work);
 

@@ -20,6 +20,8 @@ namespace calot::deformation {
 struct KernelView {
     std::array<float*, 3> displacement_m{}, velocity_m_per_s{};
     std::array<float*, 9> gradient{}, moment_stress{};
+    float* stiffening = nullptr;
+    float most_squared_stretch = 0.0f;  ///< |F|^2 beyond which tissue tears
     std::array<const float*, 6> moment_inverse{};
     std::array<float*, 3> own_force_N{};
     std::array<const float*, 3> step_sum{};
@@ -30,7 +32,7 @@ struct KernelView {
     const float* lame_mu_Pa = nullptr;
     const float* lame_lambda_Pa = nullptr;
     std::array<std::int64_t, 9> offset{};  ///< of the nine positive directions
-    bool embedding = true;                 ///< the gradient sweep stores G, and ghosts', for whoever embeds points
+    bool embedding = true;  ///< the gradient sweep stores G, also ghosts', for whoever embeds points, and how far F stretches
     tissue::ElasticLaw law = tissue::ElasticLaw::stable_neo_hookean;
     float volume_stiffness_Pa = 0.0f;
     float spacing_m = 0.0f;
@@ -49,7 +51,10 @@ void refresh_group(const tissue::Model& model, const tissue::State& state, Group
 /// The group of a cell that is or was a phyxel or ghost; for any other, the last that begins before it, or the first.
 Group& group_of(Work& work, std::int64_t phyxel);
 
-using Groups = std::span<const Group>;
+/// Work::stiffening that counts: below it, tissue keeps its mass, and momentum with it.
+inline constexpr float kStiffer = 0.5f;
+
+using Groups = std::span<Group>;
 
 /// G and M.
 void sweep_gradients(const KernelView& view, Groups groups);

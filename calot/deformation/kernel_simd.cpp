@@ -76,7 +76,7 @@ HWY_INLINE Lanes along(Lanes a, Lanes b) {
 /// A vector of cells: the first one's index, its group and its lane in there.
 struct Place {
     std::int64_t i;
-    const Group& group;
+    Group& group;
     int lane;
 
     Mask mask(std::uint16_t bits) const { return simd::mask_of(D(), bits, lane); }
@@ -87,6 +87,15 @@ struct Place {
     template <int d>
     Mask minus() const {
         return mask(group.minus[d]);
+    }
+    /// Sets these lanes of one of the group's words.
+    void mark(std::uint16_t& word, Mask lanes) const {
+        const D d;
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(d, lanes, bytes);
+        const std::uint32_t all = ((1u << hn::Lanes(d)) - 1u) << lane;
+        const std::uint32_t bits = (bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8) << lane;
+        word = static_cast<std::uint16_t>((word & ~all) | bits);
     }
 };
 
@@ -157,10 +166,18 @@ HWY_INLINE void cofactor(const Lanes (&g)[9], Lanes (&c)[9]) {
     c[8] = g[0] * g[4] - g[1] * g[3];
 }
 
-/// First Piola-Kirchhoff stress; law.h has the equations.
+/// Sum of the nine squares.
+HWY_INLINE Lanes squares(const Lanes (&a)[9]) {
+    Lanes sum = a[0] * a[0];
+    for (int e = 1; e < 9; ++e) sum = sum + a[e] * a[e];
+    return sum;
+}
+
+/// First Piola-Kirchhoff stress; law.h has the equations. Also cof F.
 template <tissue::ElasticLaw law>
-HWY_INLINE void stress(const KernelView& k, const Lanes (&g)[9], Lanes mu, Lanes lambda, Lanes (&p)[9]) {
-    Lanes cofactor_g[9], cofactor_f[9], difference[9];
+HWY_INLINE void stress(const KernelView& k, const Lanes (&g)[9], Lanes mu, Lanes lambda, Lanes (&p)[9],
+                       Lanes (&cofactor_f)[9]) {
+    Lanes cofactor_g[9], difference[9];
     cofactor(g, cofactor_g);
     const Lanes trace = g[0] + g[4] + g[8];
     const Lanes minors = cofactor_g[0] + cofactor_g[4] + cofactor_g[8];
@@ -198,16 +215,31 @@ HWY_INLINE void stress(const KernelView& k, const Lanes (&g)[9], Lanes mu, Lanes
     }
 }
 
+/// How far F stretches, for tear.cpp and stable_mass.h.
+template <tissue::ElasticLaw law>
+HWY_INLINE void measure_stretch(const KernelView& k, const Place& at, const Lanes (&g)[9], const Lanes (&cofactor_f)[9]) {
+    const D d;
+    Lanes f[9];
+    for (int e = 0; e < 9; ++e) f[e] = e % 4 == 0 ? all(1.0f) + g[e] : g[e];
+    const Lanes stretch = squares(f);
+    Lanes stiffening = squares(cofactor_f) - all(3.0f);
+    if constexpr (law == tissue::ElasticLaw::saint_venant_kirchhoff)  // d(F S)/dF: (3 lambda^2 - 1) / 2 along a stretch
+        stiffening = Lanes{hn::Max(stiffening.v, (all(1.5f) * (stretch - all(3.0f))).v)};
+    store(Lanes{hn::Max(stiffening.v, hn::Zero(d))}, k.stiffening + at.i);
+    at.mark(at.group.overstretched, hn::Gt(stretch.v, hn::Set(d, k.most_squared_stretch)));
+    at.mark(at.group.stiffened, hn::Gt(stiffening.v, hn::Set(d, kStiffer)));
+}
+
 template <tissue::ElasticLaw law>
 HWY_INLINE void gradients_of(const KernelView& k, const Place& at) {
     const std::int64_t i = at.i;
-    Lanes b[9], force[3], inverse[6], g[9], p[9], m[9];
+    Lanes b[9], force[3], inverse[6], g[9], p[9], m[9], cofactor_f[9];
     const Lanes hourglass = load(k.hourglass + i), spacing = all(k.spacing_m);
     add_all_links(k, at, hourglass, b, force);
     for (int e = 0; e < 6; ++e) inverse[e] = load(k.moment_inverse[e] + i);
     for (int e = 0; e < 9; ++e) b[e] = spacing * b[e];
     multiply_symmetric(b, inverse, g);
-    stress<law>(k, g, load(k.lame_mu_Pa + i), load(k.lame_lambda_Pa + i), p);
+    stress<law>(k, g, load(k.lame_mu_Pa + i), load(k.lame_lambda_Pa + i), p, cofactor_f);
     const Lanes volume = load(k.volume_m3 + i);
     for (int e = 0; e < 6; ++e) inverse[e] = volume * inverse[e];
     multiply_symmetric(p, inverse, m);
@@ -215,8 +247,10 @@ HWY_INLINE void gradients_of(const KernelView& k, const Place& at) {
         m[e] = m[e] - hourglass * g[e];
         store(m[e], k.moment_stress[e] + i);
     }
-    if (k.embedding)
+    if (k.embedding) {
         for (int e = 0; e < 9; ++e) store(g[e], k.gradient[e] + i);
+        measure_stretch<law>(k, at, g, cofactor_f);
+    }
     Lanes step[3];
     for (int c = 0; c < 3; ++c) step[c] = load(k.step_sum[static_cast<std::size_t>(c)] + i);
     for (int r = 0; r < 3; ++r) {
@@ -236,7 +270,7 @@ HWY_INLINE void ghost_forces_of(const KernelView& k, const Place& at) {
 template <class Bits, class Body>
 HWY_INLINE void for_each_vector(Groups groups, const Bits& of, const Body& body) {
     constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
-    for (const Group& group : groups)
+    for (Group& group : groups)
         for (int lane = 0; lane < kGroupCells; lane += kLanes)
             if (((of(group) >> lane) & ((1u << kLanes) - 1u)) != 0) body(Place{group.first + lane, group, lane});
 }

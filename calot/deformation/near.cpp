@@ -13,6 +13,7 @@
 
 #include "calot/deformation/carriers.h"
 #include "calot/deformation/embedding.h"
+#include "calot/deformation/near_kernel.h"
 #include "calot/deformation/occupancy.h"
 
 namespace calot::deformation {
@@ -23,12 +24,6 @@ namespace {
 /// half a cell's diagonal is 0.87, stretched by up to 1.7.
 constexpr double kPhyxelMargin = 1.5;
 
-struct CapsuleF {
-    Vec3f a, ab;
-    float inverse_length2, radius;
-    bool bare;
-};
-
 float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
     const Vec3f ap = p - capsule.a;
     const float t = std::min(1.0f, std::max(0.0f, glm::dot(ap, capsule.ab) * capsule.inverse_length2));
@@ -36,38 +31,38 @@ float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
     return std::sqrt(glm::dot(d, d)) - capsule.radius;
 }
 
-/// Capsules in single precision. At most 16: more than any instrument has.
-struct Capsules {
-    std::array<CapsuleF, 16> item;
-    std::size_t count = 0;
+}  // namespace
 
-    explicit Capsules(const std::vector<tissue::Capsule>& capsules) {
-        for (const tissue::Capsule& c : capsules) {
-            if (count == item.size()) break;
-            const Vec3f a(c.a_m), ab = Vec3f(c.b_m) - a;
-            const float length2 = glm::dot(ab, ab);
-            item[count++] = {a, ab, length2 > 0.0f ? 1.0f / length2 : 0.0f, static_cast<float>(c.radius_m), c.bare};
-        }
+Capsules::Capsules(const std::vector<tissue::Capsule>& capsules) {
+    for (const tissue::Capsule& c : capsules) {
+        if (count == item.size()) break;
+        const Vec3f a(c.a_m), ab = Vec3f(c.b_m) - a;
+        const float length2 = glm::dot(ab, ab);
+        item[count++] = {a, ab, length2 > 0.0f ? 1.0f / length2 : 0.0f, static_cast<float>(c.radius_m), c.bare};
     }
-    float distance(const Vec3f& p, std::uint32_t which = ~0u) const {
-        float nearest = 1e9f;
-        for (std::size_t k = 0; k < count; ++k)
-            if ((which >> k) & 1u) nearest = std::min(nearest, distance_to_surface(item[k], p));
-        return nearest;
-    }
-    /// Bits of the capsules within `reach_m` of a point.
-    std::uint32_t within(const Vec3f& p, float reach_m) const {
-        std::uint32_t which = 0;
-        for (std::size_t k = 0; k < count; ++k) which |= (distance_to_surface(item[k], p) <= reach_m ? 1u : 0u) << k;
-        return which;
-    }
-    float bare_distance(const Vec3f& p) const {
-        float nearest = 1e9f;
-        for (std::size_t k = 0; k < count; ++k)
-            if (item[k].bare) nearest = std::min(nearest, distance_to_surface(item[k], p));
-        return nearest;
-    }
-};
+}
+
+float Capsules::distance(const Vec3f& p, std::uint32_t which) const {
+    float nearest = 1e9f;
+    for (std::size_t k = 0; k < count; ++k)
+        if ((which >> k) & 1u) nearest = std::min(nearest, distance_to_surface(item[k], p));
+    return nearest;
+}
+
+std::uint32_t Capsules::within(const Vec3f& p, float reach_m) const {
+    std::uint32_t which = 0;
+    for (std::size_t k = 0; k < count; ++k) which |= (distance_to_surface(item[k], p) <= reach_m ? 1u : 0u) << k;
+    return which;
+}
+
+float Capsules::bare_distance(const Vec3f& p) const {
+    float nearest = 1e9f;
+    for (std::size_t k = 0; k < count; ++k)
+        if (item[k].bare) nearest = std::min(nearest, distance_to_surface(item[k], p));
+    return nearest;
+}
+
+namespace {
 
 /// The hexels of a phyxel with an absent face neighbour.
 std::uint64_t surface_hexels(const tissue::Model& model, const Work& work, const OccupancyShifts& shifts,
@@ -215,43 +210,9 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
     }
 }
 
-/// Lanes of the phyxels of a group whose centres are within `reach_m` of a capsule.
-std::uint32_t group_within(const tissue::Model& model, const tissue::State& state, const Capsules& capsules,
-                           const Group& group, float reach_m) {
-    const auto first = static_cast<std::size_t>(group.first);
-    std::array<std::array<float, kGroupCells>, 3> at;  // in the world
-    Int3 c = model.phyxels.coordinates(group.first);
-    const Int3 stride = model.phyxels.stride;
-    const int fast = stride.x == 1 ? 0 : stride.y == 1 ? 1 : 2;
-    for (std::size_t lane = 0; lane < kGroupCells; ++lane) {
-        if (c[fast] > model.phyxels.size[fast])
-            c = model.phyxels.coordinates(group.first + static_cast<std::int64_t>(lane));
-        const Vec3 centre_m = model.phyxels.centre_m(c);
-        for (std::size_t r = 0; r < 3; ++r)
-            at[r][lane] = static_cast<float>(centre_m[static_cast<int>(r)]) + state.displacement_m[r][first + lane];
-        ++c[fast];
-    }
-    std::array<std::uint32_t, kGroupCells> within{};
-    for (std::size_t k = 0; k < capsules.count; ++k) {
-        const CapsuleF& capsule = capsules.item[k];
-        const float most = (capsule.radius + reach_m) * (capsule.radius + reach_m);
-        for (std::size_t lane = 0; lane < kGroupCells; ++lane) {  // a vector at a time
-            const float x = at[0][lane] - capsule.a.x, y = at[1][lane] - capsule.a.y, z = at[2][lane] - capsule.a.z;
-            float t = (x * capsule.ab.x + y * capsule.ab.y + z * capsule.ab.z) * capsule.inverse_length2;
-            t = t < 0.0f ? 0.0f : t;
-            t = t > 1.0f ? 1.0f : t;
-            const float dx = x - t * capsule.ab.x, dy = y - t * capsule.ab.y, dz = z - t * capsule.ab.z;
-            within[lane] |= dx * dx + dy * dy + dz * dz <= most ? 1u : 0u;
-        }
-    }
-    std::uint32_t bits = 0;
-    for (std::size_t lane = 0; lane < kGroupCells; ++lane) bits |= within[lane] << lane;
-    return bits;
-}
-
 }  // namespace
 
-void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
+void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, Work& work,
                double reach_m) {
     exchange.near.clear();
     if (exchange.capsules.empty()) return;
@@ -259,11 +220,15 @@ void find_near(const tissue::Model& model, const tissue::State& state, tissue::E
     const double phyxel_reach_m = reach_m + kPhyxelMargin * model.phyxels.spacing_m;
     const Capsules capsules(exchange.capsules);
     const Rows rows(model.hexels);
-    const auto reach = static_cast<float>(phyxel_reach_m);
-    for (const Group& group : work.groups) {
-        if (group.present == 0) continue;
-        for (std::uint32_t rest = group.present & group_within(model, state, capsules, group, reach); rest != 0;
-             rest &= rest - 1) {
+    PlaceView places;
+    for (std::size_t r = 0; r < 3; ++r) {
+        places.rest_m[r] = work.rest_m[r].data();
+        places.displacement_m[r] = state.displacement_m[r].data();
+    }
+    find_near_phyxels(places, work.groups, capsules, static_cast<float>(phyxel_reach_m), work.near_lanes);
+    for (std::size_t g = 0; g < work.groups.size(); ++g) {
+        const Group& group = work.groups[g];
+        for (std::uint32_t rest = group.present & work.near_lanes[g]; rest != 0; rest &= rest - 1) {
             const std::int64_t phyxel = group.first + __builtin_ctz(rest);
             add_hexels(model, state, exchange, work, shifts, rows, capsules, phyxel, model.phyxels.coordinates(phyxel),
                        static_cast<float>(reach_m));

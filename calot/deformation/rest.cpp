@@ -95,8 +95,7 @@ void fill_from_hexels(const Model& model, const Work& work, std::int64_t phyxel,
     rest.mu_Pa = content.mu / content.hexels;
     rest.lambda_Pa = content.lambda / content.hexels;
     const double fill = static_cast<double>(content.hexels) / model.hexels_per_phyxel();
-    rest.moving_mass_kg = rest.mass_kg * std::max(1.0, model.deformation.mass_fraction_floor / fill) *
-                          static_cast<double>(model.phyxel_mass_scale[static_cast<std::size_t>(phyxel)]);
+    rest.moving_mass_kg = rest.mass_kg * std::max(1.0, model.deformation.mass_fraction_floor / fill);
 }
 
 }  // namespace
@@ -168,9 +167,10 @@ void store_mass(const Model& model, const State& state, Work& work, std::int64_t
     const auto cell = static_cast<std::size_t>(phyxel);
     PhyxelRest rest;
     if (state.phyxel_present.test(phyxel)) fill_from_hexels(model, work, phyxel, rest);
-    const double moving = std::max(rest.moving_mass_kg, stable_mass_kg(model, state, work, phyxel));
-    work.inverse_mass_per_kg[cell] = rest.mass_kg > 0.0 ? static_cast<float>(1.0 / moving) : 0.0f;
-    work.gravity_share[cell] = rest.mass_kg > 0.0 ? static_cast<float>(rest.mass_kg / moving) : 0.0f;
+    work.weighing_mass_kg[cell] = static_cast<float>(rest.mass_kg);
+    work.moving_mass_kg[cell] = static_cast<float>(rest.moving_mass_kg);
+    work.stable_mass_kg[cell] = static_cast<float>(stable_mass_kg(model, state, work, phyxel));
+    set_mass(work, phyxel, work.raise[cell]);
 }
 
 template <class Visit>

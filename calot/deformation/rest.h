@@ -12,7 +12,7 @@ struct PhyxelRest {
     Mat3 moment_inverse_per_m2{0.0};  ///< A^-1; zero where A is (nearly) singular
     double volume_m3 = 0.0;           ///< v, effective; 0 for ghosts
     double mass_kg = 0.0;             ///< of its hexels; 0 = absent or ghost
-    double moving_mass_kg = 0.0;      ///< at least a share of a full cell, scaled by Model::phyxel_mass_scale
+    double moving_mass_kg = 0.0;      ///< at least a share of a full cell
     double hourglass_N_per_m = 0.0;   ///< kappa
     double mu_Pa = 0.0;
     double lambda_Pa = 0.0;

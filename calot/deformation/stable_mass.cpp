@@ -1,5 +1,7 @@
 #include "calot/deformation/stable_mass.h"
 
+#include <algorithm>
+
 #include "calot/deformation/ghosts.h"
 #include "calot/deformation/links.h"
 
@@ -16,19 +18,36 @@ Mat3 moment_inverse_per_m2(const Work& work, std::int64_t phyxel) {
 
 }  // namespace
 
+void find_initial_stiffness(const tissue::Model& model, Work& work) {
+    for (std::int64_t hexel = model.hexels.first; hexel < model.hexels.last; ++hexel) {
+        if (!model.hexel_initial.test(hexel)) continue;
+        const tissue::Material& material = model.materials[model.hexel_material[static_cast<std::size_t>(hexel)]];
+        const double nu = material.poisson_ratio;  // lambda + 2 mu = E (1 - nu) / ((1 + nu) (1 - 2 nu))
+        const double modulus = material.youngs_modulus_Pa * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+        work.initial_stiffness_Nm[static_cast<std::size_t>(model.phyxel_of(model.hexels.coordinates(hexel)))] +=
+            static_cast<float>(modulus * model.hexel_volume_m3());
+    }
+}
+
 void refresh_pull(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t phyxel) {
     const auto i = static_cast<std::size_t>(phyxel);
     const Mat3 inverse = moment_inverse_per_m2(work, phyxel);
     Vec3 own(0.0);
     double lengths = 0.0;
-    for_each_link(model.phyxels, state.links, phyxel, [&](std::int64_t, const Int3& step, double weight) {
+    double support = 0.0;
+    const double stiffness = static_cast<double>(work.initial_stiffness_Nm[i]);
+    for_each_link(model.phyxels, state.links, phyxel, [&](std::int64_t other, const Int3& step, double weight) {
         const Vec3 g = inverse * (weight * model.phyxels.spacing_m * Vec3(step));
         own -= g;
+        const double others = static_cast<double>(work.initial_stiffness_Nm[static_cast<std::size_t>(other)]);
+        support += weight * (model.phyxel_ghost.test(other) ? 1.0 : std::min(1.0, others / stiffness));
         lengths += glm::length(g);
     });
+    constexpr double kWhole = 6 * kFaceWeight + 12 * kEdgeWeight;
+    const double share = 1.0 - kSupport * support / kWhole;
     const double modulus = static_cast<double>(work.lame_lambda_Pa[i] + 2.0f * work.lame_mu_Pa[i]);
     work.pull_N_per_m2[i] =
-        static_cast<float>(static_cast<double>(work.volume_m3[i]) * modulus * (lengths + glm::length(own)));
+        static_cast<float>(share * static_cast<double>(work.volume_m3[i]) * modulus * (lengths + glm::length(own)));
 }
 
 namespace {
@@ -57,6 +76,38 @@ double ghosts_row(const tissue::Model& model, const tissue::State& state, const 
 }
 
 }  // namespace
+
+void set_mass(Work& work, std::int64_t phyxel, float raise) {
+    const auto i = static_cast<std::size_t>(phyxel);
+    const float weighing = work.weighing_mass_kg[i];
+    const float moving = std::max(work.moving_mass_kg[i], raise * work.stable_mass_kg[i]);
+    work.inverse_mass_per_kg[i] = weighing > 0.0f ? 1.0f / moving : 0.0f;
+    work.gravity_share[i] = weighing > 0.0f ? weighing / moving : 0.0f;
+}
+
+void raise_masses(const tissue::Model& model, const tissue::State& state, Work& work) {
+    for (const std::int32_t cell : work.raised) {
+        work.raise[static_cast<std::size_t>(cell)] = 1.0f;
+        set_mass(work, cell, 1.0f);
+    }
+    work.raised.clear();
+    auto raise = [&](std::int64_t cell, float factor) {
+        float& most = work.raise[static_cast<std::size_t>(cell)];
+        if (!(factor > most)) return;
+        if (most == 1.0f) work.raised.push_back(static_cast<std::int32_t>(cell));
+        most = factor;
+    };
+    for (const Group& group : work.groups)
+        for (std::uint32_t rest = group.stiffened & group.present; rest != 0; rest &= rest - 1) {
+            const std::int64_t phyxel = group.first + __builtin_ctz(rest);
+            const float factor = 1.0f + work.stiffening[static_cast<std::size_t>(phyxel)];
+            raise(phyxel, factor);
+            for_each_link(model.phyxels, state.links, phyxel, [&](std::int64_t other, const Int3&, double) {
+                if (state.phyxel_present.test(other)) raise(other, factor);
+            });
+        }
+    for (const std::int32_t cell : work.raised) set_mass(work, cell, work.raise[static_cast<std::size_t>(cell)]);
+}
 
 double stable_mass_kg(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t phyxel) {
     auto hourglass = [&](std::int64_t p) { return static_cast<double>(work.hourglass[static_cast<std::size_t>(p)]); };

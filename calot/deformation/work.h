@@ -29,6 +29,7 @@ struct Group {
     std::int32_t first = 0;  ///< cell
     std::uint16_t present = 0, ghost = 0;
     std::uint16_t touched = 0;                     ///< scratch of update_gradients_about, 0 between calls
+    std::uint16_t overstretched = 0, stiffened = 0;  ///< as gradient is: beyond Model's tear_stretch; see stiffening
     std::array<std::uint16_t, 9> plus{}, minus{};  ///< links towards +d and -d
 };
 
@@ -39,8 +40,10 @@ struct Work {
         occupancy;  ///< surviving hexels of the main component; bit x + m (y + m z), local coordinates; 0 for ghosts
     std::array<Array<float>, 6> moment_inverse;  ///< A^-1 [1/m^2], symmetric: xx xy xz yy yz zz; zero = no own stress
     Array<float> volume_m3;                      ///< v, effective (scaled down when poorly linked)
-    Array<float> inverse_mass_per_kg;            ///< of the mass that moves, 0 = absent or ghost
-    Array<float> gravity_share;                  ///< mass that weighs / mass that moves (stable_mass.h), 0 = absent
+    Array<float> weighing_mass_kg;               ///< of the hexels that are left; 0 = absent or ghost
+    Array<float> moving_mass_kg;                 ///< the same, with the floor of Model's mass_fraction_floor
+    Array<float> initial_stiffness_Nm;           ///< v (lambda + 2 mu) of the whole phyxel; 0 for ghosts
+    Array<float> stable_mass_kg;                 ///< least mass for a stable step at rest (stable_mass.h)
     Array<float> hourglass;                      ///< kappa
     Array<float> lame_mu_Pa, lame_lambda_Pa;     ///< volume averages over surviving hexels
     Array<float> pull_N_per_m2;                  ///< of a phyxel's own stress at its neighbours (stable_mass.h)
@@ -48,10 +51,17 @@ struct Work {
     Array<std::uint32_t> link_word;  ///< live links: bit k towards cell k of the neighbourhood (neighbours.h)
     std::vector<Mirror> mirrors;     ///< of all ghosts, in the order of their cells
 
+    // Of a tick: stable_mass.h says why masses depend on how tissue is deformed
+    Array<float> inverse_mass_per_kg;  ///< of the mass that moves, 0 = absent or ghost
+    Array<float> gravity_share;        ///< mass that weighs / mass that moves, 0 = absent
+    std::vector<std::int32_t> raised;  ///< cells whose masses differ from those at rest
+    Array<float> raise;                ///< by which factor; 1 elsewhere
+
     // Always current: belongs to State::displacement_m at the end of integrate() and after sever_burnt_links()
     std::array<Array<float>, 9> gradient;       ///< G, row-major: gradient[3 r + c] = du_r / dX_c
     std::array<Array<float>, 9> moment_stress;  ///< M = v P A^-1 - kappa G, row-major
     std::array<Array<float>, 3> own_force_N;    ///< M_i sum w X_ij + sum w (kappa_i + kappa_j) u_ij
+    Array<float> stiffening;  ///< how much stiffer than at rest, at most: 0 = not (stable_mass.h)
 
     // Topology and embedding (initialise_topology)
     Array<std::uint64_t> held;           ///< [phyxels.cells] cells of Model::hexel_held, bits as in occupancy
@@ -65,6 +75,8 @@ struct Work {
 
     std::vector<Group> groups;                 ///< hold all phyxels and ghosts, do not overlap, ascending
     std::vector<std::int32_t> touched_groups;  ///< scratch
+    std::vector<std::uint16_t> near_lanes;     ///< [groups] scratch of find_near
+    std::array<Array<float>, 3> rest_m;        ///< [phyxels.cells] centres at rest
     ContactWork contact;                       ///< one tick's contact points
 
     int substeps = 1;

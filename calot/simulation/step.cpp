@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "calot/base/parallel.h"
 #include "calot/deformation/embedding.h"
 #include "calot/deformation/grasp.h"
 #include "calot/deformation/integrate.h"
@@ -20,6 +21,7 @@ constexpr double kReach_m = 2e-3;
 class StageClock {
   public:
     explicit StageClock(std::array<float, kStages>& stage_us) : stage_us_(stage_us), last_(Clock::now()) {}
+    void restart() { last_ = Clock::now(); }
     void lap(Stage stage) {
         const auto now = Clock::now();
         stage_us_[static_cast<std::size_t>(stage)] = std::chrono::duration<float, std::micro>(now - last_).count();
@@ -68,11 +70,11 @@ void remember_instruments(tissue::State& state, const tissue::Exchange& exchange
 
 void step(const tissue::Model& model, tissue::State& state, Work& work, const tissue::Input& input) {
     tissue::Exchange& exchange = work.exchange;
-    StageClock clock(work.stage_us);
     exchange.removed_hexels.clear();
     exchange.changed_phyxels.clear();
     exchange.gas.clear();
 
+    StageClock clock(work.stage_us);
     place_instruments(model, state, work, input);
     deformation::find_near(model, state, exchange, work.deformation, kReach_m);
     instruments::find_contacts(model, state, exchange);
@@ -80,17 +82,26 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
                               {work.grasper.jaw_length_m, 0.5 * work.grasper.jaw_diameter_m, work.grasper.opening_rad});
     clock.lap(Stage::contact);
 
-    deformation::integrate(model, state, exchange, work.deformation);
+    // Tissue moves by forces, warms by currents: within a tick neither asks the other.
+    parallel_pair(
+        "simulation.move_and_heat",
+        [&] {
+            StageClock moving(work.stage_us);
+            deformation::advance(model, state, exchange, work.deformation);
+            moving.lap(Stage::deformation);
+        },
+        [&] {
+            StageClock heating(work.stage_us);
+            electric::step_field(model, state, exchange, input, *work.electric);
+            heating.lap(Stage::electric);
+            if (input.wipe_tip) state.tip.char_kg = 0.0;
+            thermal::conduct(model, state, exchange, work.thermal);
+            heating.lap(Stage::heat);
+        });
+    deformation::check(model, state, work.deformation);
     remember_instruments(state, exchange, input);
-    clock.lap(Stage::deformation);
 
-    electric::step_field(model, state, exchange, input, *work.electric);
-    clock.lap(Stage::electric);
-
-    if (input.wipe_tip) state.tip.char_kg = 0.0;
-    thermal::conduct(model, state, exchange, work.thermal);
-    clock.lap(Stage::heat);
-
+    clock.restart();
     thermal::remove_vaporised(model, state, exchange, work.thermal);
     place_gas(model, state, work);  // while the phyxels that carried it are still there
     clock.lap(Stage::removal);

@@ -26,7 +26,7 @@ struct DeformationParameters {
     double volume_stiffness_Pa = 0.0;   ///< k_v of Eq. (8), Saint Venant-Kirchhoff only
     double hourglass_alpha = 0.6;       ///< share of E in the hourglass control, 0.3 to 0.6
     double damping_per_s = 80.0;        ///< gamma: velocity decays by exp(-gamma dt)
-    double time_step_safety = 0.7;      ///< dt <= safety * s / c_L
+    double time_step_safety = 0.7;      ///< dt <= safety * s / c_L of the softest tissue
     double mass_fraction_floor = 0.25;  ///< phyxels are never lighter than this share of a full cell
     double singular_ratio = 0.03;       ///< lambda_min/lambda_max of A below which own stress is zero
     double tear_stretch = 2.5;   ///< tissue stretched beyond this tears; chosen: fat parts at about twice its length
@@ -115,8 +115,6 @@ struct Model {
     // --- Phyxels
     BitArray phyxel_initial;  ///< [phyxels.cells] has hexels at the start
     BitArray phyxel_ghost;    ///< [phyxels.cells] fixed cells outside the tissue (u = 0) that hold their neighbours
-    Array<float> phyxel_mass_scale;  ///< [phyxels.cells] >= 1, selective mass scaling of stiff tissues
-    double added_mass_kg = 0.0;      ///< by mass scaling, over the whole tissue
 
     std::vector<RigidOrgan> organs;
 

@@ -136,7 +136,6 @@ Model sample(const anatomy::Anatomy& anatomy, const SamplingParameters& paramete
     model.hexel_held = BitArray(model.hexels.cells);
     model.phyxel_initial = BitArray(model.phyxels.cells);
     model.phyxel_ghost = BitArray(model.phyxels.cells);
-    model.phyxel_mass_scale.assign(static_cast<std::size_t>(model.phyxels.cells), 1.0f);
 
     // Hexels: bytes first (bits of neighbouring rows share words, so they are set afterwards, by one thread).
     Array<MaterialIndex>& mark = model.hexel_material;
@@ -185,41 +184,21 @@ Model sample(const anatomy::Anatomy& anatomy, const SamplingParameters& paramete
 }
 
 void prepare_time_step(Model& model) {
-    struct Average {
-        double mu = 0.0, lambda = 0.0, density = 0.0;
-        int hexels = 0;
-    };
-    std::vector<Average> average(static_cast<std::size_t>(model.phyxels.cells));
+    DeformationParameters& d = model.deformation;
+    if (d.substeps != 0) return;
+    std::vector<bool> seen(model.materials.size(), false);
+    for (const MaterialIndex index : model.hexel_material)
+        if (index != kNoMaterial) seen[index] = true;
     double softest = 1e300;
-    for (std::int64_t h = model.hexels.first; h < model.hexels.last; ++h) {
-        const MaterialIndex index = model.hexel_material[static_cast<std::size_t>(h)];
-        if (index == kNoMaterial) continue;
-        const Material& material = model.materials[index];
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+        if (!seen[k]) continue;
+        const Material& material = model.materials[k];
         const double mu = material.youngs_modulus_Pa / (2.0 * (1.0 + material.poisson_ratio));
         const double lambda = 2.0 * mu * material.poisson_ratio / (1.0 - 2.0 * material.poisson_ratio);
         softest = std::min(softest, wave_speed_squared(mu, lambda, material.density_kg_per_m3));
-        Average& a = average[static_cast<std::size_t>(model.phyxel_of(model.hexels.coordinates(h)))];
-        a.mu += mu;
-        a.lambda += lambda;
-        a.density += material.density_kg_per_m3;
-        ++a.hexels;
     }
-    DeformationParameters& d = model.deformation;
-    const double spacing = model.phyxels.spacing_m;
-    if (d.substeps == 0) {
-        const double longest = d.time_step_safety * spacing / std::sqrt(softest);
-        d.substeps = std::max(1, static_cast<int>(std::ceil(model.tick_s / longest - 1e-9)));
-    }
-    const double dt = model.tick_s / d.substeps;
-    const double allowed = std::pow(d.time_step_safety * spacing / dt, 2.0);  // (lambda + 2 mu) / rho must stay below
-    model.added_mass_kg = 0.0;
-    for (std::size_t p = 0; p < average.size(); ++p) {
-        const Average& a = average[p];
-        if (a.hexels == 0) continue;
-        const double scale = std::max(1.0, wave_speed_squared(a.mu, a.lambda, a.density) / allowed);
-        model.phyxel_mass_scale[p] = static_cast<float>(scale);
-        model.added_mass_kg += (scale - 1.0) * a.density * model.hexel_volume_m3();
-    }
+    const double longest = d.time_step_safety * model.phyxels.spacing_m / std::sqrt(softest);
+    d.substeps = std::max(1, static_cast<int>(std::ceil(model.tick_s / longest - 1e-9)));
 }
 
 }  // namespace calot::tissue

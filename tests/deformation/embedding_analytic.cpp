@@ -287,7 +287,7 @@ TEST(FindNear, KeepsTheNearestAtCapacity) {
     const tissue::Model model =
         tissue::sample(anatomy::make_block({.size_m = Vec3(0.06, 0.06, 0.0048), .held_below = false}), {});
     tissue::State state = tissue::State::make(model);
-    const Work work = make_work(model, state);
+    Work work = make_work(model, state);
     tissue::Exchange exchange;
     tissue::reserve_exchange(model, exchange);
     exchange.capsules.push_back({.a_m = Vec3(0.0, 0.0, 0.0), .b_m = Vec3(0.001, 0.0, 0.0), .radius_m = 5e-4});

@@ -15,7 +15,6 @@ TEST(Sampling, BlockHasTheHexelsOfItsVolume) {
     // Ghosts: the layer below, and its ring (edge neighbours) outside.
     EXPECT_EQ(model.phyxel_ghost.count(), 12 * 10 - 4);
     EXPECT_EQ(model.deformation.substeps, 3);
-    EXPECT_EQ(model.added_mass_kg, 0.0);
 }
 
 TEST(Sampling, RefusesWhatItCannotSample) {
