@@ -9,6 +9,8 @@
 //                 row 0   | row 1   | row 2   |  border row
 //                         shared border cells, never filled
 //
+//   Rows may also be further apart, so that all of them begin at the same place within vectors (Rows).
+//
 //   So index(x, y, z) is valid for x in [-1, size.x], likewise y, z, and all neighbours within one cell of a filled
 //   cell can be read without a test. Sweeps run linearly over [first, last) and mask by presence bits.
 
@@ -31,8 +33,14 @@ struct Lattice {
     /// A lattice of `size` cells. Requires size >= 1 along each axis.
     static Lattice make(const Vec3& origin_m, double spacing_m, const Int3& size);
 
+    /// Where rows begin in arrays: at multiples of `multiple`, after `shift` < multiple further cells. With a multiple of
+    /// a vector's lanes, neighbours in other rows lie in whole vectors as the cells themselves do.
+    struct Rows {
+        int multiple = 1, shift = 0;
+    };
     /// The same with chosen axes, fastest first: for sparse fillings, the axis along which runs are longest.
-    static Lattice make(const Vec3& origin_m, double spacing_m, const Int3& size, const std::array<int, 3>& axes);
+    static Lattice make(const Vec3& origin_m, double spacing_m, const Int3& size, const std::array<int, 3>& axes,
+                        const Rows& rows);
 
     std::int64_t index(int x, int y, int z) const {
         return first + std::int64_t{x} * stride.x + std::int64_t{y} * stride.y + std::int64_t{z} * stride.z;
@@ -42,7 +50,7 @@ struct Lattice {
     std::int64_t offset(const Int3& d) const {
         return std::int64_t{d.x} * stride.x + std::int64_t{d.y} * stride.y + std::int64_t{d.z} * stride.z;
     }
-    /// Coordinates of an index in [first, last). A border cell has a coordinate equal to `size`.
+    /// Coordinates of an index in [first, last). A border cell has a coordinate of `size` or more.
     Int3 coordinates(std::int64_t index) const;
     bool contains(const Int3& c) const {
         return c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x < size.x && c.y < size.y && c.z < size.z;

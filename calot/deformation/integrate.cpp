@@ -61,14 +61,18 @@ bool all_finite(const State& state, const Work& work) {
 }  // namespace
 
 std::vector<Group> make_groups(const Model& model, const State& state) {
+    // Where rows begin alike within vectors, so do groups; else at the first cell that no earlier one holds.
+    bool aligned = true;
+    for (const int stride : {model.phyxels.stride.x, model.phyxels.stride.y, model.phyxels.stride.z})
+        aligned &= stride == 1 || stride % kGroupCells == 0;
     std::vector<Group> groups;
-    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last;) {
-        const bool filled = state.phyxel_present.test(p) || model.phyxel_ghost.test(p);
-        if (filled) {
-            groups.emplace_back().first = static_cast<std::int32_t>(p);
-            refresh_group(model, state, groups.back());
-        }
-        p += filled ? kGroupCells : 1;
+    std::int64_t end = 0;
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
+        if (p < end || !(state.phyxel_present.test(p) || model.phyxel_ghost.test(p))) continue;
+        const std::int64_t first = aligned ? p / kGroupCells * kGroupCells : p;
+        groups.emplace_back().first = static_cast<std::int32_t>(first);
+        refresh_group(model, state, groups.back());
+        end = first + kGroupCells;
     }
     return groups;
 }

@@ -43,8 +43,7 @@ struct KernelView {
     static KernelView make(const tissue::Model& model, tissue::State& state, Work& work);
 };
 
-/// The fewest groups that hold all phyxels and ghosts: each begins at the first cell that no earlier one holds. Sweeps
-/// run over ranges of this list, so that empty space costs nothing.
+/// Groups that hold all phyxels and ghosts. Sweeps run over ranges of this list, so that empty space costs nothing.
 std::vector<Group> make_groups(const tissue::Model& model, const tissue::State& state);
 /// Reads a group's bits anew.
 void refresh_group(const tissue::Model& model, const tissue::State& state, Group& group);
