@@ -4,21 +4,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <new>
 #include <vector>
 
 namespace calot {
 
-/// Allocates on 64-byte boundaries (a cache line, the widest vector).
+/// Allocates on 64-byte boundaries (a cache line, the widest vector). Large arrays begin at different places within
+/// pages: a kernel reads some forty arrays at the same index, and caches have few places for lines that lie alike.
+void* allocate_apart(std::size_t bytes);
+void free_apart(void* p);
+
 template <class T>
 struct AlignedAllocator {
     using value_type = T;
-    static constexpr std::align_val_t kAlignment{64};
     AlignedAllocator() = default;
     template <class U>
     AlignedAllocator(const AlignedAllocator<U>&) {}
-    T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kAlignment)); }
-    void deallocate(T* p, std::size_t) { ::operator delete(p, kAlignment); }
+    T* allocate(std::size_t n) { return static_cast<T*>(allocate_apart(n * sizeof(T))); }
+    void deallocate(T* p, std::size_t) { free_apart(p); }
     template <class U>
     bool operator==(const AlignedAllocator<U>&) const {
         return true;
