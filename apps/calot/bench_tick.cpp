@@ -112,6 +112,33 @@ t = 2.0
 offset_mm = [-8, 0, 8]
 )";
 
+/// Takes hold of the surface, lifts it by half the block's height and drags it aside, until it slips or tears.
+constexpr const char* kGrasp = R"(
+[[script.grasper]]
+t = 0.0
+offset_mm = [0, 0, 6]
+jaw = 1.0
+[[script.grasper]]
+t = 0.5
+offset_mm = [0, 0, -2]
+jaw = 1.0
+[[script.grasper]]
+t = 0.8
+offset_mm = [0, 0, -2]
+jaw = 0.0
+[[script.grasper]]
+t = 1.8
+offset_mm = [0, 0, 10]
+jaw = 0.0
+[[script.grasper]]
+t = 2.8
+offset_mm = [14, 8, 8]
+jaw = 0.0
+[[script.key]]
+t = 0.0
+offset_mm = [-14, 0, 20]
+)";
+
 TickScene shipped(const std::string& file, const std::string& title, int threads, double seconds, double target_us,
                   double weight) {
     return {file,    title,   [file] { return std::make_shared<simulation::Setup>(scene::build(shipped_scene(file))); },
@@ -138,6 +165,7 @@ void add_ticks(const BenchPlan& plan, Jobs& jobs, BenchResults& results) {
     if (!plan.quick) {
         scenes.push_back(written("fast burn", "a block burnt as fast as it goes", kFastBurn, 6.0));
         scenes.push_back(written("punch", "deep, quick pressing without current", kPunch, 2.2));
+        scenes.push_back(written("grasp", "a grasp that lifts and drags tissue", kGrasp, 3.0));
     }
     for (const TickScene& scene : scenes)
         jobs.add(fmt::format("{}, {} thread{}", scene.title, scene.threads, scene.threads == 1 ? "" : "s"),
