@@ -47,7 +47,7 @@ double share_of(const Lattice& lattice, const BitArray& present, std::int64_t ce
 Groups Groups::make(const tissue::Model& model, const BitArray& present) {
     const Lattice& lattice = model.hexels;
     Groups all;
-    const std::int64_t count = lattice.cells / kGroupCells + 2;
+    const std::int64_t count = lattice.cells / kGroupCells + 17;  // a block of 16 groups may begin with the last cells
     all.groups.assign(static_cast<std::size_t>(count), {});
     all.faces.assign(static_cast<std::size_t>(lattice.cells), 0);
     all.share.assign(static_cast<std::size_t>(lattice.cells), 0);

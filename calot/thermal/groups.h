@@ -37,7 +37,7 @@ static_assert(sizeof(CellGroup) == 16);
 
 /// Groups of a lattice and the faces of its hexels.
 struct Groups {
-    Array<CellGroup> groups;    ///< [hexels.cells / 16 + 2]
+    Array<CellGroup> groups;    ///< [hexels.cells / 16 + 17]
     Array<std::uint8_t> faces;  ///< [hexels.cells] number towards gas, and towards held tissue times kHeldFace
     Array<std::uint8_t> share;  ///< [hexels.cells] of exposed hexels, what each face counts, in 1 / kWholeFace
     BitArray dirty;             ///< [groups] to be looked at anew; empty between calls
