@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "calot/base/parallel.h"
 #include "calot/electric/conductivity.h"
@@ -34,7 +35,7 @@ void gather_conductivity(const tissue::Model& model, Work& work) {
     const Int3 size = window.end - window.begin;
     const bool whole = size.x == window.cells && size.y == window.cells && size.z == window.cells;
     if (!whole) std::fill(work.sigma_S_per_m.begin(), work.sigma_S_per_m.end(), 0.0f);
-    parallel_for("electric.gather", window.begin.z, window.end.z, 8, [&](std::int64_t low, std::int64_t high) {
+    parallel_for("electric.gather", window.begin.z, window.end.z, fine.task_planes(), [&](std::int64_t low, std::int64_t high) {
         for (int c = static_cast<int>(low); c < high; ++c)
             for (int b = window.begin.y; b < window.end.y; ++b)
                 work.grid.kernels.gather(work.conductivity, model.hexels.index(window.to_hexel({window.begin.x, b, c})),
@@ -49,12 +50,12 @@ void list_groups(Work& work) {
     Krylov& krylov = work.grid.krylov;
     fine.groups.clear();
     for (std::size_t n = 0; n < work.alive.size(); ++n) {
-        const std::int64_t at = fine.first + static_cast<std::int64_t>(n) * kGroup;
-        const float* sigma = work.sigma_S_per_m.data() + at;
-        float largest = 0.0f;
-        for (std::int64_t k = 0; k < kGroup; ++k) largest = std::max(largest, sigma[k]);
-        if (largest > 0.0f) {
-            fine.groups.push_back({static_cast<std::int32_t>(at), 0, 0});
+        const std::int64_t at = fine.all[n].at;
+        std::uint32_t bits[kGroup], any = 0;  // of conductivities, none of which is negative
+        std::memcpy(bits, work.sigma_S_per_m.data() + at, sizeof(bits));
+        for (const std::uint32_t one : bits) any |= one;
+        if (any != 0) {
+            fine.groups.push_back(fine.all[n]);
             work.alive[n] = 1;
         } else if (work.alive[n] != 0) {
             work.alive[n] = 0;
@@ -156,7 +157,7 @@ void connect_entries(const tissue::Model& model, const tissue::State& state, con
 void make_faces(Work& work) {
     Level& fine = work.grid.levels[0];
     parallel_for(
-        "electric.faces", 0, static_cast<std::int64_t>(fine.groups.size()), 2048,
+        "electric.faces", 0, static_cast<std::int64_t>(fine.groups.size()), kTaskGroups,
         [&](std::int64_t b, std::int64_t e) { work.grid.kernels.faces(fine, work.sigma_S_per_m.data(), b, e); });
     // The last cell of a row is followed by the next row, the last row by the next plane.
     for (int c = 0; c < fine.rows; ++c) {

@@ -69,7 +69,7 @@ void find_heat(const tissue::Model& model, tissue::State& state, Work& work, dou
     Level& fine = work.grid.levels[0];
     const Cells phi = work.grid.krylov.x, heat = fine.solution;
     const auto factor = static_cast<float>(scale * scale);
-    parallel_for("electric.heat", 0, static_cast<std::int64_t>(fine.groups.size()), 2048,
+    parallel_for("electric.heat", 0, static_cast<std::int64_t>(fine.groups.size()), kTaskGroups,
                  [&](std::int64_t b, std::int64_t e) {
                      work.grid.kernels.heat(fine, work.sigma_S_per_m.data(), phi.data(), factor, heat.data(), b, e);
                  });

@@ -85,24 +85,26 @@ struct Rows {
     }
 };
 
-/// One value per material, for the lanes of a vector.
+/// One value per material, for the lanes of a vector that `wanted` names; the others get anything.
 struct Lookup {
-    const tissue::MaterialIndex* material;
+    using DI = hn::RebindToSigned<D>;
+    hn::Vec<DI> index;
+    std::int32_t first;
     bool same;
-    HWY_INLINE explicit Lookup(const tissue::MaterialIndex* m) : material(m), same(true) {
-        for (std::int64_t k = 1; k < lanes(); ++k) same = same && m[k] == m[0];
-    }
+    HWY_INLINE Lookup(const tissue::MaterialIndex* material, hn::Mask<D> wanted)
+        : index(hn::PromoteTo(DI(), hn::LoadU(hn::Rebind<std::uint8_t, D>(), material))),
+          first(material[hn::FindFirstTrue(D(), wanted)]),
+          same(hn::AllFalse(D(), hn::AndNot(hn::RebindMask(D(), hn::Eq(index, hn::Set(DI(), first))), wanted))) {}
     HWY_INLINE V of(const Conductivity::PerMaterial<float>& table) const {
-        if (HWY_LIKELY(same)) return all(table[material[0]]);
-        alignas(64) float values[kGroup];
-        for (std::int64_t k = 0; k < lanes(); ++k) values[k] = table[material[k]];
-        return hn::Load(D(), values);
+        if (HWY_LIKELY(same)) return all(table[static_cast<std::size_t>(first)]);
+        return hn::GatherIndex(D(), table.data(), index);
     }
 };
 
 /// As it is in hexels that are not at rest.
-HWY_INLINE V warm_conductivity(const Conductivity& tissue, V rest, V enthalpy, std::int64_t hexel) {
-    const Lookup lookup(tissue.material + hexel);
+HWY_INLINE V warm_conductivity(const Conductivity& tissue, V rest, V enthalpy, std::int64_t hexel,
+                               hn::Mask<D> warm) {
+    const Lookup lookup(tissue.material + hexel, warm);
     const V water = load(tissue.water_kg_per_m3 + hexel);
     const V capacity =
         hn::Add(lookup.of(tissue.dry_capacity_J_per_m3K), hn::Mul(water, lookup.of(tissue.water_capacity_J_per_kgK)));
@@ -128,7 +130,7 @@ void gather(const Conductivity& tissue, std::int64_t first, std::int64_t count, 
         const V enthalpy = load(tissue.enthalpy_J_per_m3 + hexel);
         const auto warm = hn::And(present, hn::Ne(enthalpy, hn::Zero(d)));
         if (!hn::AllFalse(d, warm))
-            sigma = hn::IfThenElse(warm, warm_conductivity(tissue, sigma, enthalpy, hexel), sigma);
+            sigma = hn::IfThenElse(warm, warm_conductivity(tissue, sigma, enthalpy, hexel, warm), sigma);
         store(sigma, out + k);
     }
     for (; k < count; ++k) out[k] = tissue.of(first + k);
@@ -399,12 +401,34 @@ HWY_INLINE std::uint32_t sixteen_bits(const std::uint8_t* bits, std::int64_t fir
     return three >> (first & 7) & 0xffffu;
 }
 
-/// Adds 16 floats to 16 places.
-HWY_INLINE void add_group(const float* values, HeatSums::Places& places) {
+/// The lanes of a vector, from the k-th of sixteen bits on.
+HWY_INLINE hn::Mask<D> lanes_of(std::uint32_t bits, std::int64_t k) {
+    return simd::mask_of(D(), static_cast<std::uint16_t>(bits), static_cast<int>(k));
+}
+
+/// Which of 16 cells are of a material, as bits.
+HWY_INLINE std::uint32_t places_of(const tissue::MaterialIndex* material, tissue::MaterialIndex wanted) {
+    const hn::CappedTag<std::uint8_t, 16> d;
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < kGroup; k += hn::Lanes(d)) {
+        std::uint8_t some[8] = {};
+        hn::StoreMaskBits(d, hn::Eq(hn::LoadU(d, material + k), hn::Set(d, wanted)), some);
+        std::uint16_t low;
+        std::memcpy(&low, some, sizeof(low));
+        bits |= static_cast<std::uint32_t>(low) << k;
+    }
+    return bits;
+}
+
+/// Adds those of 16 floats whose bits are set to 16 places.
+HWY_INLINE void add_group(const float* values, std::uint32_t bits, HeatSums::Places& places) {
     const hn::CappedTag<double, 8> wide;
     const hn::Rebind<float, decltype(wide)> narrow;
+    alignas(64) float wanted[kGroup];
+    for (std::int64_t k = 0; k < kGroup; k += lanes())
+        hn::Store(hn::IfThenElseZero(lanes_of(bits, k), load(values + k)), D(), wanted + k);
     for (std::size_t k = 0; k < kGroup; k += hn::Lanes(wide))
-        hn::StoreU(hn::Add(hn::LoadU(wide, places.data() + k), hn::PromoteTo(wide, hn::LoadU(narrow, values + k))),
+        hn::StoreU(hn::Add(hn::LoadU(wide, places.data() + k), hn::PromoteTo(wide, hn::Load(narrow, wanted + k))),
                    wide, places.data() + k);
 }
 
@@ -426,22 +450,23 @@ void split(const Conductivity& tissue, const float* heat, const float* sigma, fl
     std::int64_t low = 0;
     for (; low + kGroup <= count; low += kGroup) {
         const tissue::MaterialIndex* material = tissue.material + first + low;
-        const tissue::MaterialIndex m = material[0];
         const std::uint32_t kept = sixteen_bits(tissue.present, first + low);
-        if (kept == 0) {
-            add_group(heat + low, sums.rest);
-            std::fill_n(out + low, kGroup, 0.0f);
-        } else if (kept == 0xffff && std::memcmp(material, material + 1, kGroup - 1) == 0) {
-            add_group(heat + low, sums.kept[m]);
+        if (kept != 0xffff) add_group(heat + low, ~kept, sums.rest);
+        const V factor = all(scale);
+        for (std::int64_t k = 0; k < kGroup; k += lanes())
+            store(hn::IfThenElseZero(lanes_of(kept, k), hn::Mul(factor, load(heat + low + k))), out + low + k);
+        // Nearly always they are of one material.
+        for (std::uint32_t left = kept; left != 0;) {
+            const tissue::MaterialIndex m = material[hwy::Num0BitsBelowLS1Bit_Nonzero32(left)];
+            const std::uint32_t alike = left & places_of(material, m);
+            left &= ~alike;
+            add_group(heat + low, alike, sums.kept[m]);
             V most = all(0.0f);
-            for (std::int64_t k = low; k < low + kGroup; k += lanes()) {
-                const V here = load(heat + k);
-                store(hn::Mul(all(scale), here), out + k);
-                most = hn::Max(most, hn::Mul(here, load(sigma + k)));
+            for (std::int64_t k = 0; k < kGroup; k += lanes()) {
+                const V density = hn::Mul(load(heat + low + k), load(sigma + low + k));
+                most = hn::Max(most, hn::IfThenElseZero(lanes_of(alike, k), density));
             }
             sums.greatest[m] = std::max(sums.greatest[m], hn::GetLane(hn::MaxOfLanes(D(), most)));
-        } else {
-            for (std::int64_t k = low; k < low + kGroup; ++k) one(k);
         }
     }
     for (; low < count; ++low) one(low);

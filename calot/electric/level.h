@@ -26,6 +26,10 @@ namespace calot::electric {
 
 inline constexpr std::int64_t kGroup = 16;  ///< cells in a group: the widest vector
 
+/// Groups of a parallel loop's task. A window of 64^3 cells is one task: its loops take tens of microseconds, and
+/// starting a second thread costs more than it saves.
+inline constexpr std::int64_t kTaskGroups = 16384;
+
 /// A value for every cell of a level.
 using Cells = std::span<float>;
 
@@ -61,6 +65,7 @@ struct Level {
         std::int32_t child;   ///< finer level: index of the cell (2a, 2b, 2c)
         std::int32_t parent;  ///< coarser level: index of the cell (a/2, b/2, c/2)
     };
+    std::vector<Group> all;     ///< groups there can be, by place; with their relations once in a hierarchy
     std::vector<Group> groups;  ///< reserved for all
 
     static Level make(int cells);
@@ -73,6 +78,8 @@ struct Level {
         return {in_plane % static_cast<int>(row), in_plane / static_cast<int>(row), offset / static_cast<int>(plane)};
     }
     std::int64_t group_capacity() const { return row / kGroup * rows * rows; }
+    /// Planes of a parallel loop's task that is worth its start.
+    std::int64_t task_planes() const { return kTaskGroups * kGroup / plane + 1; }
 };
 
 }  // namespace calot::electric

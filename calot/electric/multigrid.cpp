@@ -9,7 +9,7 @@ namespace calot::electric {
 
 namespace {
 
-constexpr std::int64_t kChunk = 2048;  ///< groups a task
+constexpr std::int64_t kChunk = kTaskGroups;
 constexpr int kCoarsest = 2;           ///< cells along an edge where coarsening ends
 constexpr int kCoarsestSweeps = 4;     ///< even: each pair ends where it began
 
@@ -36,20 +36,19 @@ double smooth(const Kernels& kernels, Level& level) {
 
 /// Lists all groups.
 void list_all(Level& level) {
-    level.groups.clear();
-    for (std::int64_t at = level.first; at < level.first + level.group_capacity() * kGroup; at += kGroup)
-        level.groups.push_back({static_cast<std::int32_t>(at), 0, 0});
+    level.groups.assign(level.all.begin(), level.all.end());
 }
 
 /// Keeps the groups that hold an unknown. Those that are skipped must read as zero, so the others' vectors are wiped.
 void list_unknown(Level& level) {
     level.groups.clear();
-    for (std::int64_t at = level.first; at < level.first + level.group_capacity() * kGroup; at += kGroup) {
+    for (const Level::Group& group : level.all) {
+        const std::int64_t at = group.at;
         const float* weight = level.weight.data() + at;
         float largest = 0.0f;
         for (std::int64_t k = 0; k < kGroup; ++k) largest = std::max(largest, weight[k]);
         if (largest > 0.0f) {
-            level.groups.push_back({static_cast<std::int32_t>(at), 0, 0});
+            level.groups.push_back(group);
             continue;
         }
         for (auto* values : {&level.right, &level.solution, &level.scratch})
@@ -59,7 +58,7 @@ void list_unknown(Level& level) {
 
 /// Where the children and parents of each group lie.
 void relate(Level& level, const Level* finer, const Level* coarser) {
-    for (Level::Group& group : level.groups) {
+    for (Level::Group& group : level.all) {
         const Int3 cell = level.coordinates(group.at);
         if (finer != nullptr) group.child = static_cast<std::int32_t>(finer->index(2 * cell.x, 2 * cell.y, 2 * cell.z));
         if (coarser != nullptr)
@@ -94,6 +93,8 @@ Level Level::make(int cells) {
                            {&level.g[0], &level.g[1], &level.g[2], &level.ground, &level.weight, &level.right,
                             &level.solution, &level.scratch});
     level.groups.reserve(static_cast<std::size_t>(level.group_capacity()));
+    for (std::int64_t at = level.first; at < level.first + level.group_capacity() * kGroup; at += kGroup)
+        level.all.push_back({static_cast<std::int32_t>(at), 0, 0});
     return level;
 }
 
@@ -103,6 +104,9 @@ Multigrid make_multigrid(int cells, const Kernels& kernels) {
     grid.levels.push_back(Level::make(cells));
     do grid.levels.push_back(Level::make(grid.levels.back().rows / 2));
     while (grid.levels.back().cells > kCoarsest);
+    for (std::size_t l = 0; l < grid.levels.size(); ++l)
+        relate(grid.levels[l], l > 0 ? &grid.levels[l - 1] : nullptr,
+               l + 1 < grid.levels.size() ? &grid.levels[l + 1] : nullptr);
     grid.krylov.storage.allocate(grid.levels[0].length, 8, {&grid.krylov.x, &grid.krylov.p});
     grid.parts.resize(static_cast<std::size_t>(grid.levels[0].group_capacity() / kChunk + 1));
     return grid;
@@ -112,21 +116,19 @@ void build_finest(Multigrid& grid) {
     Level& fine = grid.levels[0];
     parallel_for("electric.weights", 0, size(fine), kChunk,
                  [&](std::int64_t b, std::int64_t e) { grid.kernels.weights(fine, b, e); });
-    relate(fine, nullptr, &grid.levels[1]);
 }
 
 void build_coarse(Multigrid& grid) {
     const Kernels& kernels = grid.kernels;
     for (std::size_t l = 1; l < grid.levels.size(); ++l) {
         Level& level = grid.levels[l];
-        parallel_for("electric.aggregate", 0, level.cells, 4, [&](std::int64_t low, std::int64_t high) {
+        parallel_for("electric.aggregate", 0, level.cells, level.task_planes(), [&](std::int64_t low, std::int64_t high) {
             for (std::int64_t c = low; c < high; ++c) kernels.aggregate(grid.levels[l - 1], level, static_cast<int>(c));
         });
         list_all(level);
         parallel_for("electric.weights", 0, size(level), kChunk,
                      [&](std::int64_t b, std::int64_t e) { kernels.weights(level, b, e); });
         list_unknown(level);
-        relate(level, &grid.levels[l - 1], l + 1 < grid.levels.size() ? &grid.levels[l + 1] : nullptr);
     }
 }
 

@@ -38,7 +38,7 @@ struct RightEntry {
     float value;
 };
 
-/// From g and ground of the finest level, whose groups are listed: its weights and relations.
+/// From g and ground of the finest level, whose groups are listed: its weights.
 void build_finest(Multigrid& grid);
 /// All coarse matrices and groups.
 void build_coarse(Multigrid& grid);

@@ -24,18 +24,22 @@ void warm_start(const tissue::State& state, Work& work) {
     const Int3 moved = window.low - state.field_low;
     const Int3 shift(moved[window.axis.x], moved[window.axis.y], moved[window.axis.z]);
     const int last = window.cells - 1;
-    for (const Level::Group& group : fine.groups) {
-        const Int3 cell = fine.coordinates(group.at);
-        const Int3 from(0, std::clamp(cell.y + shift.y, 0, last), std::clamp(cell.z + shift.z, 0, last));
-        const float* __restrict source = state.potential.data() + in_window(window, from);
-        const float* __restrict weight = fine.weight.data() + group.at;
-        float* __restrict to = work.grid.krylov.x.data() + group.at;
-        if (shift.x == 0 && cell.x + kGroup <= window.cells)
-            for (int k = 0; k < kGroup; ++k) to[k] = weight[k] > 0.0f ? source[cell.x + k] : 0.0f;
-        else
-            for (int k = 0; k < kGroup; ++k)
-                to[k] = weight[k] > 0.0f ? source[std::clamp(cell.x + k + shift.x, 0, last)] : 0.0f;
-    }
+    std::size_t n = 0;
+    for (int c = 0; c < fine.rows; ++c)
+        for (int b = 0; b < fine.rows; ++b) {
+            const Int3 from(0, std::clamp(b + shift.y, 0, last), std::clamp(c + shift.z, 0, last));
+            const float* __restrict source = state.potential.data() + in_window(window, from);
+            for (int a = 0; a < fine.row; a += kGroup, ++n) {
+                if (work.alive[n] == 0) continue;
+                const float* __restrict weight = fine.weight.data() + fine.all[n].at;
+                float* __restrict to = work.grid.krylov.x.data() + fine.all[n].at;
+                if (shift.x == 0 && a + kGroup <= window.cells)
+                    for (int k = 0; k < kGroup; ++k) to[k] = weight[k] > 0.0f ? source[a + k] : 0.0f;
+                else
+                    for (int k = 0; k < kGroup; ++k)
+                        to[k] = weight[k] > 0.0f ? source[std::clamp(a + k + shift.x, 0, last)] : 0.0f;
+            }
+        }
 }
 
 void keep_potential(tissue::State& state, const Work& work, float scale) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calot/base/array.h"
+#include "calot/thermal/groups.h"
 #include "calot/tissue/exchange.h"
 #include "calot/tissue/state.h"
 
@@ -12,6 +13,7 @@ namespace calot::thermal {
 
 /// Cells of a block, the unit of work and of rest: a few rows.
 inline constexpr std::int64_t kBlockCells = 256;
+inline constexpr unsigned kBlockGroups = kBlockCells / kGroupCells;
 
 /// The cells of a block.
 struct Cells {

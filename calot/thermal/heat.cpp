@@ -13,8 +13,13 @@ namespace calot::thermal {
 
 namespace {
 
-/// Blocks per chunk of a parallel loop: some microseconds of work.
-constexpr std::int64_t kBlocksPerChunk = 32;
+/// Blocks per chunk of a parallel loop: some tens of microseconds of work, which a task's start costs a few of.
+constexpr std::int64_t kChunkBlocks = 4 * kRunBlocks;
+/// Of hexels that are gas, this part goes in a tick, rounded up: few at a time, so that what follows is not too much for
+/// one tick, and soon, so that the metal is not kept waiting.
+constexpr std::size_t kSpentTicks = 4;
+/// Of a vector that has boiled or been damaged, and of one where tissues meet, in vectors of healthy tissue.
+constexpr unsigned kChangedCost = 3, kMixedCost = 5;
 
 JouleRows joule_rows(const Lattice& lattice, const tissue::JouleHeat& joule, double dt_s) {
     JouleRows rows{};
@@ -36,20 +41,20 @@ JouleRows joule_rows(const Lattice& lattice, const tissue::JouleHeat& joule, dou
 HeatStep make_step(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,
                    double dt_s) {
     const tissue::ThermalParameters& thermal = model.thermal;
-    const double s = model.hexels.spacing_m;
     HeatStep step{};
     step.properties = &work.properties;
     step.material = model.hexel_material.data();
-    step.group_material = work.group_material.data();
-    step.present = work.present.bytes();
+    step.groups = work.groups.groups.data();
+    step.faces = work.groups.faces.data();
+    step.share = work.groups.share.data();
     step.living = state.hexel_present.bytes();
-    step.held = model.hexel_held.bytes();
+    step.first = model.hexels.first;
+    step.last = model.hexels.last;
     for (int axis = 0; axis < 3; ++axis) step.offset[axis] = model.hexels.stride[axis];
+    step.furthest = std::max({step.offset[0], step.offset[1], step.offset[2]});
     step.body_K = static_cast<float>(thermal.body_temperature_K);
     step.gas_K = static_cast<float>(thermal.gas_temperature_K);
     step.dt_s = static_cast<float>(dt_s);
-    step.conduction_factor = static_cast<float>(dt_s / (s * s));
-    step.surface_factor = static_cast<float>(dt_s / s);
     step.threshold = thermal.phase_model == tissue::PhaseModel::threshold;
     step.joule = joule_rows(model.hexels, exchange.joule, dt_s);
     step.temperature_K = work.temperature_K.data();
@@ -73,43 +78,79 @@ void for_words(const Lattice& lattice, const BlockSet& blocks, const Body& body)
         }
 }
 
+unsigned cost_of(const tissue::Model& model, const Work& work, std::int64_t block) {
+    const CellGroup* groups = work.groups.groups.data() + cells_of(model.hexels, block).begin / kGroupCells;
+    unsigned cost = 0;
+    for (unsigned g = 0; g < kBlockGroups; ++g)
+        if (groups[g].present != 0)
+            cost += (groups[g].kind & kMixed) != 0 ? kMixedCost : (groups[g].kind & kChanged) != 0 ? kChangedCost : 1u;
+    return cost;
+}
+
+/// Notes which hexels went during the last step.
+void look_at_presence(const tissue::Model& model, const tissue::State& state, Work& work) {
+    Array<std::uint64_t>& before = work.present.words();
+    const Array<std::uint64_t>& now = state.hexel_present.words();
+    for (std::size_t w = 0; w < now.size(); ++w) {
+        std::uint64_t gone = before[w] & ~now[w];
+        if (gone == 0) continue;
+        before[w] = now[w];
+        for (; gone != 0; gone &= gone - 1)
+            work.groups.touch(model.hexels, static_cast<std::int64_t>(64 * w) + __builtin_ctzll(gone));
+    }
+    work.groups.refresh(model, state.hexel_present);
+}
+
+/// Shares the active blocks out to the ticks of the step. Only those of `counted` count as work.
+void plan_turns(Work& work, const BlockSet& counted) {
+    work.turns.clear();
+    const auto cost = [&](std::int32_t block) -> std::uint64_t {
+        return counted.test(block) ? work.cost[static_cast<std::size_t>(block)] : 0;
+    };
+    std::uint64_t all = 0;
+    for (std::size_t k = 0; k < work.active.words(); ++k)
+        for (std::uint64_t bits = work.active.word(k); bits != 0; bits &= bits - 1) {
+            work.turns.push_back(static_cast<std::int32_t>(64 * k) + __builtin_ctzll(bits));
+            all += cost(work.turns.back());
+        }
+    const std::size_t slices = work.slices.size() - 1;
+    std::uint64_t sum = 0;
+    std::size_t slice = 0;
+    for (std::size_t k = 0; k < work.turns.size(); ++k) {
+        for (; slice < slices && sum * slices >= slice * all; ++slice) work.slices[slice] = k;
+        sum += cost(work.turns[k]);
+    }
+    for (; slice <= slices; ++slice) work.slices[slice] = work.turns.size();
+}
+
+/// Blocks that rest for the first time: both arrays are at body temperature from now on.
+void put_to_rest(const Lattice& lattice, Work& work) {
+    for (std::size_t k = 0; k < work.heated.words(); ++k)
+        for (std::uint64_t bits = work.heated.word(k) & ~work.active.word(k); bits != 0; bits &= bits - 1) {
+            const Cells cells = cells_of(lattice, static_cast<std::int64_t>(64 * k) + __builtin_ctzll(bits));
+            std::copy(work.temperature_K.begin() + cells.begin, work.temperature_K.begin() + cells.end,
+                      work.next_temperature_K.begin() + cells.begin);
+        }
+}
+
 void begin_step(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,
                 double dt_s) {
+    look_at_presence(model, state, work);
     std::swap(work.heated, work.active);
     dilate(model.hexels, work.warm, work.active);
     add_heated(model.hexels, exchange.joule, work.active);
-    if (work.dense) work.active = work.populated;  // of equal size: no allocation
     work.active.keep(work.populated);
     exchange_with_tip(model, state, exchange, work, dt_s);
-    // Beyond active blocks nothing flows, whatever is there.
-    for_words(model.hexels, work.active,
-              [&](std::size_t w) { work.present.words()[w] = state.hexel_present.words()[w]; });
+    if (work.dense) {
+        const BlockSet counted = work.active;
+        work.active = work.populated;
+        plan_turns(work, counted);
+    } else {
+        plan_turns(work, work.active);
+    }
+    put_to_rest(model.hexels, work);
     work.burnt.clear();
     work.fallen = state.hexels_fallen;
-}
-
-/// Sets Work::turn: blocks of slice `slice` that take part, or rest for the first time. A slice takes every fourth
-/// stretch of 64 blocks: long enough for memory to be read ahead, short enough for the hot region to be shared out.
-void take_turns(Work& work, int slice) {
-    work.turn.clear();
-    const auto slices = static_cast<std::size_t>(work.slices);
-    for (auto k = static_cast<std::size_t>(slice); k < work.active.words(); k += slices)
-        for (std::uint64_t bits = work.active.word(k) | work.heated.word(k); bits != 0; bits &= bits - 1)
-            work.turn.push_back(static_cast<std::int32_t>(64 * k + static_cast<std::size_t>(__builtin_ctzll(bits))));
-}
-
-void run_block(const HeatStep& step, const Lattice& lattice, Work& work, std::size_t k) {
-    const std::int64_t block = work.turn[k];
-    const Cells cells = cells_of(lattice, block);
-    BlockSums& sums = work.sums[k] = {};
-    if (!work.active.test(block)) {  // at rest: both arrays are at body temperature from now on
-        std::copy(step.temperature_K + cells.begin, step.temperature_K + cells.end,
-                  step.next_temperature_K + cells.begin);
-        return;
-    }
-    if (step.joule.density != nullptr)
-        (work.scalar ? deposit_cells_scalar : deposit_cells)(step, cells.begin, cells.end, sums);
-    (work.scalar ? step_cells_scalar : step_cells)(step, cells.begin, cells.end, work.pristine.test(block), sums);
 }
 
 /// Steam of this tick as GasEvents, in the order of the cells. Events beyond what Exchange has room for are dropped:
@@ -127,23 +168,48 @@ void emit_steam(const tissue::Model& model, const tissue::State& state, tissue::
     }
 }
 
-/// Books what the blocks of this tick did, in their order.
-void book(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work) {
-    BlockSums total;
-    for (std::size_t k = 0; k < work.turn.size(); ++k) {
-        const BlockSums& sums = work.sums[k];
-        const std::int64_t block = work.turn[k];
+/// Whether a present hexel's latent budget is used up: it is gas.
+bool is_spent(const tissue::Model& model, const tissue::State& state, const Properties& p, std::int64_t hexel) {
+    const auto h = static_cast<std::size_t>(hexel);
+    if (state.enthalpy_J_per_m3[h] < p.spent_J_per_m3[model.hexel_material[h]]) return false;
+    return model.thermal.phase_model == tissue::PhaseModel::threshold || state.water_kg_per_m3[h] == 0.0f;
+}
+
+/// Adds hexels of a block that turned to gas to Work::spent, at its end.
+void find_spent(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t block) {
+    const auto waiting = static_cast<std::ptrdiff_t>(work.waiting);
+    const Cells cells = cells_of(model.hexels, block);
+    for (std::int64_t i = cells.begin; i < cells.end; ++i) {
+        const auto hexel = static_cast<std::int32_t>(i);
+        if (state.hexel_present.test(i) && is_spent(model, state, work.properties, i) &&
+            !std::binary_search(work.spent.begin(), work.spent.begin() + waiting, hexel))
+            work.spent.push_back(hexel);
+    }
+}
+
+/// Books what the blocks [begin, end) of Work::turns did, in their order.
+void book(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work, std::size_t begin,
+          std::size_t end) {
+    work.waiting = work.spent.size();
+    for (std::size_t k = begin; k < end; ++k) {
+        const BlockMarks& marks = work.marks[k];
+        const std::int64_t block = work.turns[k];
+        marks.warm ? work.warm.set(block) : work.warm.clear(block);
+        if (marks.changed)
+            work.cost[static_cast<std::size_t>(block)] = static_cast<std::uint8_t>(cost_of(model, work, block));
+        if (marks.spent) find_spent(model, state, work, block);
+        if (marks.boiled) emit_steam(model, state, exchange, work, block);
+    }
+    std::sort(work.spent.begin(), work.spent.end());
+    HeatSums total;
+    for (const HeatSums& sums : work.sums) {
         total.delivered += sums.delivered;
         total.conducted += sums.conducted;
         total.surface += sums.surface;
         total.perfusion += sums.perfusion;
         total.gas += sums.gas;
         total.latent += sums.latent;
-        sums.warm ? work.warm.set(block) : work.warm.clear(block);
-        if (sums.hot) work.pristine.clear(block);
-        if (sums.spent) work.spent_blocks.set(block);
         if (sums.bad_hexel >= 0 && state.status.ok) state.status = {false, "enthalpy", sums.bad_hexel, state.tick};
-        if (sums.boiled) emit_steam(model, state, exchange, work, block);
     }
     const double volume = model.hexel_volume_m3();
     tissue::EnergyBudget& energy = state.energy_J;
@@ -156,15 +222,19 @@ void book(const tissue::Model& model, tissue::State& state, tissue::Exchange& ex
 }
 
 void run_slice(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work, double dt_s,
-               int slice) {
+               std::size_t slice) {
     const HeatStep step = make_step(model, state, exchange, work, dt_s);
-    take_turns(work, slice);
-    parallel_for("thermal.step", 0, static_cast<std::int64_t>(work.turn.size()), kBlocksPerChunk,
-                 [&](std::int64_t begin, std::int64_t end) {
-                     for (std::int64_t k = begin; k < end; ++k)
-                         run_block(step, model.hexels, work, static_cast<std::size_t>(k));
+    const std::size_t begin = work.slices[slice], end = work.slices[slice + 1];
+    work.sums.assign((end - begin + kChunkBlocks - 1) / kChunkBlocks, {});  // within its capacity
+    parallel_for("thermal.step", static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), kChunkBlocks,
+                 [&](std::int64_t low, std::int64_t high) {
+                     HeatSums& sums = work.sums[(static_cast<std::size_t>(low) - begin) / kChunkBlocks];
+                     for (std::int64_t k = low; k < high; k += kRunBlocks)
+                         (work.scalar ? step_blocks_scalar : step_blocks)(
+                             step, work.turns.data() + k, static_cast<int>(std::min<std::int64_t>(kRunBlocks, high - k)),
+                             work.marks.data() + k, sums);
                  });
-    book(model, state, exchange, work);
+    book(model, state, exchange, work, begin, end);
 }
 
 /// Hexels that vanished since the step began have gone on exchanging heat. What that left in them went with them.
@@ -185,52 +255,38 @@ void book_leftovers(const tissue::Model& model, tissue::State& state, Work& work
     });
 }
 
-/// Whether a present hexel's latent budget is used up: it is gas.
-bool is_spent(const tissue::Model& model, const tissue::State& state, const Properties& p, std::int64_t hexel) {
-    const auto h = static_cast<std::size_t>(hexel);
-    if (state.enthalpy_J_per_m3[h] < p.spent_J_per_m3[model.hexel_material[h]]) return false;
-    return model.thermal.phase_model == tissue::PhaseModel::threshold || state.water_kg_per_m3[h] == 0.0f;
-}
-
-/// Fills Work::spent from blocks in which something turned to gas.
-void find_spent(const tissue::Model& model, const tissue::State& state, Work& work) {
-    work.spent.clear();
-    for (std::size_t k = 0; k < work.spent_blocks.words(); ++k)
-        for (std::uint64_t bits = work.spent_blocks.word(k); bits != 0; bits &= bits - 1) {
-            const auto block = static_cast<std::int64_t>(64 * k) + __builtin_ctzll(bits);
-            work.spent_blocks.clear(block);
-            const Cells cells = cells_of(model.hexels, block);
-            for (std::int64_t i = cells.begin; i < cells.end; ++i)
-                if (state.hexel_present.test(i) && is_spent(model, state, work.properties, i))
-                    work.spent.push_back(static_cast<std::int32_t>(i));
-        }
-}
-
 void finish_step(const tissue::Model& model, tissue::State& state, Work& work) {
     std::swap(work.temperature_K, work.next_temperature_K);
     book_leftovers(model, state, work);
     state.energy_J.transit = 0.0;  // up to rounding
-    find_spent(model, state, work);
+    // What waits is now a function of State: those that cooled while they waited do not go.
+    work.spent.erase(std::remove_if(work.spent.begin(), work.spent.end(),
+                                    [&](std::int32_t hexel) {
+                                        return !state.hexel_present.test(hexel) ||
+                                               !is_spent(model, state, work.properties, hexel);
+                                    }),
+                     work.spent.end());
 }
 
 /// What Work says of a block, from State.
 void look_at_block(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t block) {
     const auto body_K = static_cast<float>(model.thermal.body_temperature_K);
+    const bool threshold = model.thermal.phase_model == tissue::PhaseModel::threshold;
     const Cells cells = cells_of(model.hexels, block);
-    bool warm = false, pristine = model.thermal.phase_model != tissue::PhaseModel::threshold, spent = false;
+    bool warm = false;
     for (std::int64_t i = cells.begin; i < cells.end; ++i) {
         const auto h = static_cast<std::size_t>(i);
-        const float alive = work.properties.water_kg_per_m3[model.hexel_material[h]];
-        pristine &= state.damage[h] == 0.0f;
+        CellGroup& group = work.groups.groups[h / kGroupCells];
+        // With a threshold, water follows H.
+        if (threshold || state.damage[h] != 0.0f) group.kind |= kChanged;
         if (!state.hexel_present.test(i)) continue;
+        if (state.water_kg_per_m3[h] != work.properties.water_kg_per_m3[model.hexel_material[h]]) group.kind |= kChanged;
         work.temperature_K[h] = temperature_K(model, state, i);
         warm |= work.temperature_K[h] != body_K;
-        pristine &= state.water_kg_per_m3[h] == alive;
-        spent |= is_spent(model, state, work.properties, i);
+        if (is_spent(model, state, work.properties, i)) work.spent.push_back(static_cast<std::int32_t>(i));
     }
     if (warm) work.warm.set(block);
-    if (pristine) work.pristine.set(block);
-    if (spent) work.spent_blocks.set(block);
+    work.cost[static_cast<std::size_t>(block)] = static_cast<std::uint8_t>(cost_of(model, work, block));
 }
 
 }  // namespace
@@ -241,26 +297,27 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     const std::int64_t blocks = block_count(lattice);
     Work work;
     work.properties = Properties::make(model);
-    work.group_material = group_materials(model);
+    work.groups = Groups::make(model, state.hexel_present);
     work.temperature_K.assign(cells, static_cast<float>(model.thermal.body_temperature_K));
     work.steam_kg_per_m3.assign(cells, 0.0f);
     work.present = state.hexel_present;
     work.populated = populated_blocks(model);
-    for (BlockSet* set : {&work.active, &work.warm, &work.heated, &work.pristine, &work.spent_blocks})
-        *set = BlockSet(blocks);
+    for (BlockSet* set : {&work.active, &work.warm, &work.heated}) *set = BlockSet(blocks);
+    work.cost.assign(static_cast<std::size_t>(blocks), 0);
+    work.spent.reserve(static_cast<std::size_t>(model.hexel_initial.count()));
+    work.burnt.reserve(work.spent.capacity());
+    work.sticks.reserve(work.spent.capacity());
     for (std::int64_t b = 0; b < blocks; ++b)
         if (work.populated.test(b)) look_at_block(model, state, work, b);
     work.next_temperature_K = work.temperature_K;
     const double step_s = model.tick_s * model.thermal.refresh_ticks;
     work.substeps =
         std::max(1, static_cast<int>(std::ceil(step_s / static_cast<double>(work.properties.longest_step_s))));
-    work.slices = work.substeps == 1 ? model.thermal.refresh_ticks : 1;
-    work.turn.reserve(static_cast<std::size_t>(blocks));
-    work.sums.resize(static_cast<std::size_t>(blocks));
-    work.spent.reserve(static_cast<std::size_t>(model.hexel_initial.count()));
-    work.burnt.reserve(work.spent.capacity());
-    work.sticks.reserve(work.spent.capacity());
-    find_spent(model, state, work);
+    work.properties.set_step(model, step_s / work.substeps);
+    work.slices.assign(static_cast<std::size_t>(work.substeps == 1 ? model.thermal.refresh_ticks : 1) + 1, 0);
+    work.turns.reserve(static_cast<std::size_t>(blocks));
+    work.marks.resize(static_cast<std::size_t>(blocks));
+    work.sums.reserve(static_cast<std::size_t>(blocks / kChunkBlocks + 1));
     return work;
 }
 
@@ -272,11 +329,12 @@ void conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange&
         state.energy_J.delivered += outflow_J;
     }
     const double dt_s = model.tick_s * model.thermal.refresh_ticks / work.substeps;
+    const int slices = static_cast<int>(work.slices.size()) - 1;
     for (int substep = 0; substep < work.substeps; ++substep) {
-        if (work.slices == 1 && tick != 0) return;
+        if (tick >= slices) return;
         if (tick == 0) begin_step(model, state, exchange, work, dt_s);
-        run_slice(model, state, exchange, work, dt_s, work.slices == 1 ? 0 : tick);
-        if (tick == work.slices - 1) finish_step(model, state, work);
+        run_slice(model, state, exchange, work, dt_s, static_cast<std::size_t>(tick));
+        if (tick == slices - 1) finish_step(model, state, work);
     }
 }
 
@@ -289,10 +347,7 @@ void remove_vaporised(const tissue::Model& model, tissue::State& state, tissue::
                                     [&](std::int32_t hexel) { return !state.hexel_present.test(hexel); }),
                      work.spent.end());
     if (work.spent.empty()) return;
-    // They were found in the last tick of a step, the first of this count, and go before the last tick of the next.
-    const auto tick = static_cast<std::size_t>((state.tick + 1) % model.thermal.refresh_ticks);
-    const std::size_t ticks_left = work.slices == 1 ? 1 : static_cast<std::size_t>(model.thermal.refresh_ticks) - tick;
-    const std::size_t count = (work.spent.size() + ticks_left - 1) / ticks_left;
+    const std::size_t count = (work.spent.size() + kSpentTicks - 1) / kSpentTicks;
     stick_char(model, state, exchange, work, count);
     for (std::size_t k = 0; k < count; ++k) {
         const std::int32_t hexel = work.spent[k];

@@ -2,13 +2,12 @@
 // Heat: conduction, surroundings, boiling, gasification, damage (docs/physics.md section 6).
 //
 // A heat step is explicit in the enthalpy H. It is spread over the ThermalParameters::refresh_ticks ticks of its
-// interval, block by block (of 256 consecutive cells):
+// interval, block by block (of 256 consecutive cells), as much work in each tick as in any other:
 //
-//     tick     0                                1               2              3
-//     begin: warm blocks --dilate--> active     .               .              .
-//     blocks with b/64 % 4 = 0                  1               2              3
-//                                                                              finish: which hexels are gas now
-//     a quarter of the hexels that are gas      a quarter       a quarter      (of the next) a quarter
+//     tick     0                                1               ...   7
+//     begin: warm blocks --dilate--> active     .               .     .
+//     the first blocks                          the next        .     the last
+//     a quarter of the hexels that are gas      a quarter       .     a quarter
 //
 // Each block takes Joule heat, exchanges heat with temperatures of the start of the step, and gets its temperatures of
 // the end, which lie in an array of their own until the step is done. So blocks need no order, and hexels that vanish
@@ -18,23 +17,23 @@
 //
 // A block is warm when any of its hexels has a temperature other than body temperature (tissue::kRest_K and more away
 // from it); its neighbours are active too, and those that Joule heat reaches. Everything that exchanges heat is zero at
-// body temperature, so that skipping the other blocks changes no byte: heat cannot be lost at the cold front, and which
-// blocks are warm is a function of State alone. Nor does the tick in which a block has its turn depend on which others
-// are active.
+// body temperature, so that skipping the other blocks changes no byte: heat cannot be lost at the cold front. Which
+// blocks are active, and hence when each has its turn, is a function of State alone.
 
 #include <cstdint>
 #include <vector>
 
 #include "calot/base/array.h"
 #include "calot/thermal/blocks.h"
+#include "calot/thermal/groups.h"
 #include "calot/thermal/properties.h"
 #include "calot/tissue/exchange.h"
 #include "calot/tissue/state.h"
 
 namespace calot::thermal {
 
-/// What one block of cells contributed to a heat step, per cubic metre of hexel: sums over its hexels [J/m^3].
-struct BlockSums {
+/// What hexels contributed to a heat step, per cubic metre of hexel: sums over them [J/m^3].
+struct HeatSums {
     double delivered = 0.0;  ///< by Joule heat
     double conducted = 0.0;  ///< into hexels that are still there; zero over all blocks, up to rounding
     double surface = 0.0;
@@ -42,10 +41,14 @@ struct BlockSums {
     double gas = 0.0;
     double latent = 0.0;
     std::int64_t bad_hexel = -1;  ///< the first whose enthalpy is no longer a number
-    bool boiled = false;          ///< Work::steam_kg_per_m3 has entries
-    bool warm = false;            ///< holds hexels that are not at body temperature now
-    bool hot = false;             ///< and some that boil or take damage
-    bool spent = false;           ///< and some that are gas
+};
+
+/// What a heat step found in a block.
+struct BlockMarks {
+    bool warm = false;     ///< hexels that are not at body temperature now
+    bool changed = false;  ///< some that boiled or took damage
+    bool boiled = false;   ///< Work::steam_kg_per_m3 has entries
+    bool spent = false;    ///< some that are gas
 };
 
 /// Scratch. What lies in it at the end of a heat step is a function of State.
@@ -57,20 +60,21 @@ struct Work {
 
     // The room's own.
     Properties properties;
-    Array<float> next_temperature_K;     ///< [hexels.cells] of the step under way; of resting blocks as the other
-    Array<float> steam_kg_per_m3;        ///< [hexels.cells] boiled off in this tick; zero between ticks
-    Array<std::uint8_t> group_material;  ///< see Properties
-    BitArray present;                    ///< hexels when the step began
-    BlockSet populated, warm, heated;    ///< blocks that hold tissue, are warm, were active in the step before
-    BlockSet pristine;                   ///< blocks with all their water and no damage
-    BlockSet spent_blocks;               ///< blocks in which hexels turned to gas during this step
-    std::vector<std::int32_t> turn;      ///< blocks of this tick, ascending
-    std::vector<BlockSums> sums;         ///< of those
+    Groups groups;
+    Array<float> next_temperature_K;   ///< [hexels.cells] of the step under way; of resting blocks as the other
+    Array<float> steam_kg_per_m3;      ///< [hexels.cells] boiled off in this tick; zero between ticks
+    BitArray present;                  ///< hexels when the step began
+    BlockSet populated, warm, heated;  ///< blocks that hold tissue, are warm, were active in the step before
+    std::vector<std::uint8_t> cost;    ///< [blocks] of a step, in vectors of cells
+    std::vector<std::int32_t> turns;   ///< the active blocks of this step, ascending
+    std::vector<std::size_t> slices;   ///< where each tick's part of them begins, and the end
+    std::vector<BlockMarks> marks;     ///< of each
+    std::vector<HeatSums> sums;        ///< of each chunk of a tick's part
     std::vector<std::int32_t> spent;     ///< hexels that are gas and have still to go, ascending
+    std::size_t waiting = 0;             ///< how many of them there were before this tick
     std::vector<float> sticks;           ///< share of the solids of each that goes now which stays on the wire
     std::vector<std::int32_t> burnt;     ///< hexels that went since the step began
     std::int64_t fallen = 0;             ///< State::hexels_fallen when it began
-    int slices = 1;                      ///< ticks that a step is spread over
     int substeps = 1;                    ///< more than one where a step would not be stable; then all in its first tick
 };
 Work make_work(const tissue::Model& model, const tissue::State& state);
@@ -83,7 +87,7 @@ using tissue::temperature_K;
 /// nothing) plus its outflow.
 void conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
-/// Takes hexels whose latent budget is spent out of State::hexel_present, as many in each tick of an interval, and
+/// Takes a quarter of the hexels whose latent budget is spent out of State::hexel_present, and
 /// lists them in Exchange::removed_hexels, in the order of their cells, with their GasEvents.
 void remove_vaporised(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 

@@ -22,22 +22,22 @@ struct JouleRows {
 /// Everything a kernel reads and writes.
 struct HeatStep {
     // Constant
-    const Properties* properties;
+    const Properties* properties;  ///< set to the step
     const tissue::MaterialIndex* material;
-    const std::uint8_t* group_material;
-    const std::uint8_t* present;  ///< bits: hexels that take part, those present when the step began
-    const std::uint8_t* living;   ///< bits: hexels present now
-    const std::uint8_t* held;     ///< bits
-    std::int64_t offset[3];       ///< to the next cell along each axis
+    const std::uint8_t* living;  ///< bits: hexels present now; groups hold those present when the step began
+    const std::uint8_t* faces;   ///< Groups::faces
+    const std::uint8_t* share;   ///< Groups::share
+    std::int64_t first, last;    ///< of the lattice; block 0 begins at its first cell
+    std::int64_t offset[3];      ///< to the next cell along each axis
+    std::int64_t furthest;       ///< the greatest of them
     float body_K;
     float gas_K;
     float dt_s;
-    float conduction_factor;  ///< dt / s_h^2
-    float surface_factor;     ///< dt / s_h
-    bool threshold;           ///< PhaseModel::threshold
+    bool threshold;  ///< PhaseModel::threshold
     JouleRows joule;
     const float* temperature_K;  ///< at the start of the step
     // Changed
+    CellGroup* groups;           ///< [cells / 16] their kChanged
     float* next_temperature_K;  ///< at its end
     float* enthalpy_J_per_m3;
     float* water_kg_per_m3;
@@ -46,17 +46,19 @@ struct HeatStep {
     float* steam_kg_per_m3;
 };
 
-/// Adds q dt to the hexels of [begin, end) that are present now.
-void deposit_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums);
+/// A run of blocks is what a kernel works on at once: long enough for its groups to be sorted by kind, short enough to
+/// stay near.
+inline constexpr int kRunBlocks = 64;
 
-/// H' = H + dt [ (1/s_h^2) sum_alive k_ij (T_j - T_i) + w_b(Omega) rho_b c_b (T_a - T_i)
-///               - (1/s_h) sum_exposed h_c (T_i - T_s) ]                       (docs/physics.md section 6)
-/// then boils water off and sets temperature, peak and damage from enthalpy and water. `pristine`: all water is there
-/// and no damage; the same bytes either way. Cells from a multiple of 64 on.
-void step_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, bool pristine, BlockSums& sums);
-
-void deposit_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums);
-void step_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t end, bool pristine, BlockSums& sums);
+/// Adds q dt to the hexels that are present now of at most kRunBlocks blocks, then
+///
+///     H' = H + dt [ (1/s_h^2) sum_alive k_ij (T_j - T_i) + w_b(Omega) rho_b c_b (T_a - T_i)
+///                   - (1/s_h) sum_exposed h_c (T_i - T_s) ]                       (docs/physics.md section 6)
+///
+/// boils water off and sets temperature, peak and damage from enthalpy and water. Adds to the sums, sets the marks of
+/// each block.
+void step_blocks(const HeatStep& step, const std::int32_t* blocks, int count, BlockMarks* marks, HeatSums& sums);
+void step_blocks_scalar(const HeatStep& step, const std::int32_t* blocks, int count, BlockMarks* marks, HeatSums& sums);
 
 /// Calls body(hexel, density, count) for the pieces of rows of the box within the cells [begin, end).
 template <class Body>

@@ -30,31 +30,29 @@ float flow_left(float damage) {
 }
 
 /// Conduction and surroundings; returns the new enthalpy.
-float conduct(const HeatStep& step, std::int64_t i, BlockSums& sums) {
+float conduct(const HeatStep& step, std::int64_t i, HeatSums& sums) {
     const Properties& p = *step.properties;
     const float own_K = step.temperature_K[i];
     const tissue::MaterialIndex m = step.material[i];
-    const float conductivity = p.conductivity_W_per_mK[m];
-    float conduction = 0.0f, gas_faces = 0.0f, held_faces = 0.0f;
-    for (const std::int64_t stride : step.offset)
-        for (const std::int64_t j : {i - stride, i + stride}) {
-            if (bit(step.present, j))
-                conduction += face_conductivity(conductivity, p.conductivity_W_per_mK[step.material[j]]) *
-                              (step.temperature_K[j] - own_K);
-            else if (bit(step.held, j))
-                held_faces += 1.0f;
-            else
-                gas_faces += 1.0f;
-        }
+    const CellGroup& group = step.groups[i / kGroupCells];
+    float flow = 0.0f;
+    for (int n = 0; n < 6; ++n) {
+        if ((group.beside[n] >> (i % kGroupCells) & 1) == 0) continue;
+        const std::int64_t j = i + (n % 2 == 0 ? -step.offset[n / 2] : step.offset[n / 2]);
+        flow += face_conductivity(p.conducted_J_per_m3K[m], p.conducted_J_per_m3K[step.material[j]]) *
+                (step.temperature_K[j] - own_K);
+    }
+    const float share = static_cast<float>(step.share[i]) * (1.0f / kWholeFace);
+    const float gas_faces = share * static_cast<float>(step.faces[i] & kFaceMask);
+    const float held_faces = share * static_cast<float>(step.faces[i] / kHeldFace);
     const float before = step.enthalpy_J_per_m3[i];
     const float rise_K = own_K - step.body_K;
-    const float conducted = before + step.conduction_factor * conduction;
-    const float perfused = conducted - p.blood_W_per_m3K[m] * step.dt_s * flow_left(step.damage[i]) * rise_K;
-    const float held = perfused - step.surface_factor * p.held_transfer_W_per_m2K[m] * held_faces * rise_K;
+    const float conducted = before + flow;
+    const float perfused = conducted - p.to_blood_J_per_m3K[m] * flow_left(step.damage[i]) * rise_K;
+    const float held = perfused - p.to_held_J_per_m3K[m] * held_faces * rise_K;
     // Departure: gas takes only heat above body temperature. Tissue that the instrument has not heated is kept at
     // body temperature by blood and the body beneath, although the gas is cooler.
-    float to_gas =
-        rise_K > 0.0f ? step.surface_factor * p.gas_transfer_W_per_m2K[m] * gas_faces * (own_K - step.gas_K) : 0.0f;
+    float to_gas = rise_K > 0.0f ? p.to_gas_J_per_m3K[m] * gas_faces * (own_K - step.gas_K) : 0.0f;
     to_gas = std::min(to_gas, std::max(held, 0.0f));
     const float next = held - to_gas;
     // Booked is what the hexel really lost, after rounding.
@@ -66,7 +64,8 @@ float conduct(const HeatStep& step, std::int64_t i, BlockSums& sums) {
 
 /// What exceeds the boiling point turns water to steam, which takes its own heat above T_0 along, so that the rest
 /// stays at the boiling point: H - H' = dw (L + c_w (T_b - T_0)), excess = dw L.
-void boil(const HeatStep& step, std::int64_t i, float& enthalpy, float& water, BlockSums& sums) {
+void boil(const HeatStep& step, std::int64_t i, float& enthalpy, float& water, BlockMarks& marks,
+          HeatSums& sums) {
     const Properties& p = *step.properties;
     const tissue::MaterialIndex m = step.material[i];
     const float capacity = p.dry_capacity_J_per_m3K[m] + water * p.water_capacity_J_per_kgK[m];
@@ -78,12 +77,13 @@ void boil(const HeatStep& step, std::int64_t i, float& enthalpy, float& water, B
     sums.gas += static_cast<double>(enthalpy - next);
     sums.latent += static_cast<double>(steam * kLatentHeat);
     step.steam_kg_per_m3[i] += steam;
-    sums.boiled = true;
+    marks.boiled = marks.changed = true;
+    step.groups[i / kGroupCells].kind |= kChanged;
     water = left;
     enthalpy = next;
 }
 
-void settle(const HeatStep& step, std::int64_t i, float& enthalpy, BlockSums& sums) {
+void settle(const HeatStep& step, std::int64_t i, float& enthalpy, BlockMarks& marks, HeatSums& sums) {
     const Properties& p = *step.properties;
     const tissue::MaterialIndex m = step.material[i];
     float& water = step.water_kg_per_m3[i];
@@ -92,17 +92,18 @@ void settle(const HeatStep& step, std::int64_t i, float& enthalpy, BlockSums& su
         const float taken = std::max(enthalpy - p.plateau_J_per_m3[m], 0.0f);
         water = std::max(p.water_kg_per_m3[m] - taken / kLatentHeat, 0.0f);
     } else if (water > 0.0f) {
-        boil(step, i, enthalpy, water, sums);
+        boil(step, i, enthalpy, water, marks, sums);
     }
     const bool wet = !step.threshold && water > 0.0f;
     const float capacity = p.dry_capacity_J_per_m3K[m] + water * p.water_capacity_J_per_kgK[m];
     const float rise = std::min(enthalpy * (1.0f / capacity), wet ? p.wet_limit_K : p.dry_limit_K[m]);
     const float now_K = step.body_K + (std::abs(rise) < tissue::kRest_K ? 0.0f : rise);
     step.next_temperature_K[i] = now_K;
-    sums.warm |= now_K != step.body_K;
-    if (!wet && enthalpy >= p.spent_J_per_m3[m]) sums.spent = true;
+    marks.warm |= now_K != step.body_K;
+    if (!wet && enthalpy >= p.spent_J_per_m3[m]) marks.spent = true;
     if (now_K <= kDamageThreshold_K) return;
-    sums.hot = true;
+    marks.changed = true;
+    step.groups[i / kGroupCells].kind |= kChanged;
     step.peak_temperature_K[i] = std::max(step.peak_temperature_K[i], now_K);
     // A exp(-Ea/(R T)) as exp(ln rate(T_ref) + Ea/(R T_ref) (1 - T_ref/T)): A itself exceeds a float.
     const float exponent = p.damage_log_rate[m] + p.damage_slope[m] * ((now_K - kDamageReference_K) / now_K);
@@ -110,26 +111,32 @@ void settle(const HeatStep& step, std::int64_t i, float& enthalpy, BlockSums& su
     step.damage[i] = std::min(step.damage[i] + rate * step.dt_s, kDamageLimit);
 }
 
-}  // namespace
-
-void deposit_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
-    for_joule_rows(step.joule, begin, end, [&](std::int64_t first, const float* density, std::int64_t count) {
-        for (std::int64_t k = 0; k < count; ++k) {
-            if (!bit(step.living, first + k)) continue;
-            float& enthalpy = step.enthalpy_J_per_m3[first + k];
-            const float next = enthalpy + density[k] * step.joule.scaled_dt_s;
-            sums.delivered += static_cast<double>(next - enthalpy);
-            enthalpy = next;
-        }
-    });
+void deposit(const HeatStep& step, std::int64_t begin, std::int64_t end, HeatSums& sums) {
+    for_joule_rows(step.joule, begin, end,
+                   [&](std::int64_t first, const float* density, std::int64_t count) {
+                       for (std::int64_t k = 0; k < count; ++k) {
+                           if (!bit(step.living, first + k)) continue;
+                           float& enthalpy = step.enthalpy_J_per_m3[first + k];
+                           const float next = enthalpy + density[k] * step.joule.scaled_dt_s;
+                           sums.delivered += static_cast<double>(next - enthalpy);
+                           enthalpy = next;
+                       }
+                   });
 }
 
-void step_cells_scalar(const HeatStep& step, std::int64_t begin, std::int64_t end, bool, BlockSums& sums) {
-    for (std::int64_t i = begin; i < end; ++i) {
-        if (!bit(step.present, i)) continue;
-        float enthalpy = conduct(step, i, sums);
-        if (bit(step.living, i)) settle(step, i, enthalpy, sums);
-        step.enthalpy_J_per_m3[i] = enthalpy;
+}  // namespace
+
+void step_blocks_scalar(const HeatStep& step, const std::int32_t* blocks, int count, BlockMarks* marks, HeatSums& sums) {
+    for (int k = 0; k < count; ++k) {
+        marks[k] = {};
+        const std::int64_t begin = step.first + blocks[k] * kBlockCells, end = std::min(begin + kBlockCells, step.last);
+        if (step.joule.density != nullptr) deposit(step, begin, end, sums);
+        for (std::int64_t i = begin; i < end; ++i) {
+            if ((step.groups[i / kGroupCells].present >> (i % kGroupCells) & 1) == 0) continue;
+            float enthalpy = conduct(step, i, sums);
+            if (bit(step.living, i)) settle(step, i, enthalpy, marks[k], sums);
+            step.enthalpy_J_per_m3[i] = enthalpy;
+        }
     }
 }
 

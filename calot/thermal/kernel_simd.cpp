@@ -3,10 +3,11 @@
 //     T[i - slow], T[i - middle], T[i - 1]  ->  i .. i + N - 1  <-  T[i + 1], T[i + middle], T[i + slow]
 //
 // One pass does it all: it reads temperatures of the start of the step and writes those of its end into another array,
-// so that cells need no order. Nearly all vectors lie inside one tissue (group_material): its properties are then one
+// so that cells need no order. The groups of a run of blocks are sorted by what there is to do (GroupKind), and each
+// kind has a loop of its own without branches. Nearly all groups lie inside one tissue: its properties are then one
 // number for all lanes. Where tissues meet, properties are looked up lane by lane. Neighbours' presence is a few bits
-// at a constant offset. Multiplication and addition stay separate so that instruction sets with and without fused
-// multiply-add give the same bytes.
+// of the group. What is hot is listed on the way and settled afterwards. Multiplication and addition stay separate so
+// that instruction sets with and without fused multiply-add give the same bytes.
 
 #include "calot/thermal/kernel.h"
 
@@ -16,6 +17,7 @@
 
 #include "calot/base/simd.h"
 #include "calot/base/units.h"
+#include <hwy/cache_control.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace calot::thermal {
@@ -28,64 +30,54 @@ using DI = hn::RebindToSigned<D>;
 using F = hn::Vec<D>;
 using Mask = hn::Mask<D>;
 
-/// Bits of presence are read 64 cells at a time, and used a vector of cells at a time.
-constexpr std::int64_t kWordCells = 64;
-static_assert(kBlockCells % kWordCells == 0);
-
-/// Cells are counted in groups of 16, which take one vector or more.
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(D())), kParts = kGroupCells / kLanes;
 
-/// The bits of the 64 cells from `cell` on.
-HWY_INLINE std::uint64_t word_at(const std::uint8_t* bits, std::int64_t cell) {
-    std::uint64_t words[2];
-    std::memcpy(words, bits + (cell >> 6) * 8, sizeof(words));
-    const auto shift = static_cast<unsigned>(cell & 63);
-    return (words[0] >> shift) | ((words[1] << 1) << (63 - shift));
+/// Lanes of a mask from the bits of a group, from cell `k` of it on. The bits lie in memory, with something behind them.
+HWY_INLINE Mask mask_of(const std::uint16_t& bits, int k) {
+    if constexpr (kLanes >= 8) return hn::LoadMaskBits(D(), reinterpret_cast<const std::uint8_t*>(&bits) + k / 8);
+    return simd::mask_of(D(), bits, k);
 }
-
-/// Lanes of a mask from bits of a word, from bit `first` (a multiple of the lanes) on. The word lies in memory, with
-/// something behind it.
-HWY_INLINE Mask mask_of(const std::uint64_t& word, unsigned first) {
-    if constexpr (hn::MaxLanes(D()) >= 8)
-        return hn::LoadMaskBits(D(), reinterpret_cast<const std::uint8_t*>(&word) + first / 8);
-    const std::uint64_t shifted = word >> first;
-    std::uint8_t lanes[8];
-    std::memcpy(lanes, &shifted, sizeof(shifted));
-    return hn::LoadMaskBits(D(), lanes);
-}
-/// Those bits as an integer.
-HWY_INLINE std::uint64_t lanes_of(std::uint64_t word, unsigned first) {
-    return (word >> first) & ((std::uint64_t{1} << hn::Lanes(D())) - 1);
+/// The same from a bit array.
+HWY_INLINE Mask mask_at(const std::uint8_t* bits, std::int64_t cell) {
+    if constexpr (kLanes >= 8) return hn::LoadMaskBits(D(), bits + cell / 8);
+    return simd::mask_at(D(), bits, cell);
 }
 
 HWY_INLINE F number(float value) {
     return hn::Set(D(), value);
 }
 
-/// A property of the material of every lane.
+/// A property of the material of every lane of a group.
 template <bool mixed>
 class PropertyLookup {
   public:
-    /// For the cells from i on; all of the group's material, unless `mixed`.
-    HWY_INLINE PropertyLookup(const HeatStep& step, std::int64_t i) : group_(step.group_material[i / kGroupCells]) {
-        if constexpr (mixed) index_ = indices(step.material + i);
-    }
+    HWY_INLINE PropertyLookup(const HeatStep&, const CellGroup& group, std::int64_t) : material_(group.material) {}
+    HWY_INLINE F operator()(const Properties::PerMaterial<float>& property) const { return number(property[material_]); }
+
+  private:
+    tissue::MaterialIndex material_;
+};
+template <>
+class PropertyLookup<true> {
+  public:
+    /// For the cells from i on.
+    HWY_INLINE PropertyLookup(const HeatStep& step, const CellGroup&, std::int64_t i)
+        : index_(hn::PromoteTo(DI(), hn::LoadU(hn::Rebind<std::uint8_t, D>(), step.material + i))),
+          few_(step.properties->few) {}
     HWY_INLINE F operator()(const Properties::PerMaterial<float>& property) const {
-        if constexpr (mixed) return hn::GatherIndex(D(), property.data(), index_);
-        return number(property[group_]);
-    }
-    static HWY_INLINE hn::Vec<DI> indices(const tissue::MaterialIndex* material) {
-        const hn::Rebind<std::uint8_t, D> bytes;
-        return hn::PromoteTo(DI(), hn::LoadU(bytes, material));
+        if constexpr (kLanes == 16)
+            if (HWY_LIKELY(few_))
+                return hn::TableLookupLanes(hn::Load(D(), property.data()), hn::IndicesFromVec(D(), index_));
+        return hn::GatherIndex(D(), property.data(), index_);
     }
 
   private:
-    std::uint8_t group_;
-    hn::Vec<DI> index_ = hn::Zero(DI());
+    hn::Vec<DI> index_;
+    bool few_;
 };
 
 /// A sum over cells in 16 partial sums, one for each place in a group, so that it does not depend on how wide vectors
-/// are.
+/// are: in floats over some groups, then in doubles.
 class CellSum {
   public:
     HWY_INLINE CellSum() {
@@ -93,17 +85,34 @@ class CellSum {
     }
     /// `part` of a group.
     HWY_INLINE void add(int part, F values) { partial_[part] = hn::Add(partial_[part], values); }
-    /// Pairwise, which is more exact than one after the other.
-    HWY_INLINE double total() const {
+    /// Adds what it has to `places`.
+    HWY_INLINE void add_to(double* places) const {
         HWY_ALIGN float sums[kGroupCells];
         for (int part = 0; part < kParts; ++part) hn::Store(partial_[part], D(), sums + part * kLanes);
-        for (int half = kGroupCells / 2; half > 1; half /= 2)
-            for (int k = 0; k < half; ++k) sums[k] += sums[k + half];
-        return static_cast<double>(sums[0] + sums[1]);
+        const hn::CappedTag<double, 8> wide;
+        const hn::Rebind<float, decltype(wide)> narrow;
+        for (std::size_t k = 0; k < kGroupCells; k += hn::Lanes(wide))
+            hn::Store(hn::Add(hn::Load(wide, places + k), hn::PromoteTo(wide, hn::Load(narrow, sums + k))), wide,
+                      places + k);
     }
 
   private:
     F partial_[kParts];
+};
+
+/// The same in doubles.
+struct Places {
+    HWY_ALIGN double place[kGroupCells] = {};
+    HWY_INLINE double total() const {
+        double sum = 0.0;
+        for (const double value : place) sum += value;
+        return sum;
+    }
+};
+
+/// What a run adds up.
+struct RunSums {
+    Places delivered, conducted, perfusion, surface, gas, latent;
 };
 
 /// e^x for x in [-87, 87], to 2e-7: x = n ln 2 + r, Taylor's series in |r| <= ln 2 / 2 (the first term left out is
@@ -120,86 +129,31 @@ HWY_INLINE F exponential(F x) {
     return hn::Mul(series, hn::BitCast(d, power));
 }
 
-void deposit_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
+/// Joule heat in the cells [begin, end).
+HWY_NOINLINE void deposit(const HeatStep& step, std::int64_t begin, std::int64_t end, RunSums& sums) {
     const D d;
     const F dt = number(step.joule.scaled_dt_s);
     CellSum sum;
-    float rest = 0.0f;
     for_joule_rows(step.joule, begin, end, [&](std::int64_t first, const float* density, std::int64_t count) HWY_ATTR {
         std::int64_t k = 0;
-        for (; k + kGroupCells <= count; k += kGroupCells) {
-            const std::uint64_t living[2] = {word_at(step.living, first + k), 0};
+        for (; k + kGroupCells <= count; k += kGroupCells)
             for (int part = 0; part < kParts; ++part) {
                 const std::int64_t at = k + part * kLanes;
                 float* enthalpy = step.enthalpy_J_per_m3 + first + at;
                 const F before = hn::LoadU(d, enthalpy), heat = hn::Mul(hn::LoadU(d, density + at), dt);
-                const F next =
-                    hn::Add(before, hn::IfThenElseZero(mask_of(living[0], static_cast<unsigned>(part * kLanes)), heat));
+                const F next = hn::Add(before, hn::IfThenElseZero(simd::mask_at(d, step.living, first + at), heat));
                 sum.add(part, hn::Sub(next, before));
                 hn::StoreU(next, d, enthalpy);
             }
-        }
-        if (k == count) return;
-        const std::uint64_t living = word_at(step.living, first + k);
-        for (std::int64_t j = 0; k + j < count; ++j) {  // cells beyond belong to other threads
-            if (((living >> j) & 1u) == 0) continue;
-            float& enthalpy = step.enthalpy_J_per_m3[first + k + j];
-            const float next = enthalpy + density[k + j] * step.joule.scaled_dt_s;
-            rest += next - enthalpy;
-            enthalpy = next;
+        for (; k < count; ++k) {  // cells beyond belong to other threads
+            const std::int64_t i = first + k;
+            if (((step.living[i >> 3] >> (i & 7)) & 1u) == 0) continue;
+            const float before = step.enthalpy_J_per_m3[i], next = before + density[k] * step.joule.scaled_dt_s;
+            sums.delivered.place[k % kGroupCells] += static_cast<double>(next - before);
+            step.enthalpy_J_per_m3[i] = next;
         }
     });
-    sums.delivered += sum.total() + static_cast<double>(rest);
-}
-
-/// Offset to one of the six neighbours.
-HWY_INLINE std::int64_t neighbour(const HeatStep& step, int n) {
-    return n % 2 == 0 ? -step.offset[n / 2] : step.offset[n / 2];
-}
-
-/// Presence around 64 cells. Neighbours are those along -x, +x, -y, +y, -z, +z.
-struct Surroundings {
-    std::uint64_t present;    ///< the cells themselves
-    std::uint64_t living;     ///< of those, the ones still there
-    std::uint64_t beside[6];  ///< present neighbours
-    std::uint64_t gas[3];     ///< number of faces towards gas: its ones, twos and fours
-    std::uint64_t held[3];    ///< and towards held tissue
-    std::uint64_t by_held;    ///< cells with such faces
-    std::uint64_t exposed;    ///< and cells with faces towards either
-};
-
-/// Bit by bit, the sum of six words of ones: ones, twos and fours.
-HWY_INLINE void count_bits(const std::uint64_t (&words)[6], std::uint64_t (&count)[3]) {
-    const auto majority = [](std::uint64_t a, std::uint64_t b, std::uint64_t c) { return (a & b) | (c & (a ^ b)); };
-    const std::uint64_t ones_1 = words[0] ^ words[1] ^ words[2], twos_1 = majority(words[0], words[1], words[2]);
-    const std::uint64_t ones_2 = words[3] ^ words[4] ^ words[5], twos_2 = majority(words[3], words[4], words[5]);
-    const std::uint64_t carry = ones_1 & ones_2;
-    count[0] = ones_1 ^ ones_2;
-    count[1] = twos_1 ^ twos_2 ^ carry;
-    count[2] = majority(twos_1, twos_2, carry);
-}
-
-HWY_INLINE void look_around(const HeatStep& step, std::int64_t word, Surroundings& around) {
-    std::uint64_t gas[6], held[6];
-    around.by_held = 0;
-    around.present = word_at(step.present, word);
-    around.living = word_at(step.living, word);
-    for (int n = 0; n < 6; ++n) {
-        around.beside[n] = word_at(step.present, word + neighbour(step, n));
-        held[n] = word_at(step.held, word + neighbour(step, n)) & ~around.beside[n];
-        gas[n] = ~(around.beside[n] | held[n]);
-        around.by_held |= held[n] & around.present;
-    }
-    count_bits(gas, around.gas);
-    around.exposed = around.present & (around.gas[0] | around.gas[1] | around.gas[2] | around.by_held);
-    count_bits(held, around.held);
-}
-
-/// Numbers of faces of the lanes from `k` on.
-HWY_INLINE F faces_of(const std::uint64_t (&count)[3], unsigned k) {
-    const F ones = hn::IfThenElseZero(mask_of(count[0], k), number(1.0f));
-    const F twos = hn::IfThenElseZero(mask_of(count[1], k), number(2.0f));
-    return hn::Add(hn::Add(ones, twos), hn::IfThenElseZero(mask_of(count[2], k), number(4.0f)));
+    sum.add_to(sums.delivered.place);
 }
 
 /// Conductivity of the faces between lanes of two conductivities: their harmonic mean.
@@ -209,39 +163,32 @@ HWY_INLINE F face_conductivity(F a, F b) {
     return hn::IfThenElse(hn::Eq(a, b), a, mean);
 }
 
-/// Temperatures of the 64 cells from `word` on and of their neighbours.
-struct Temperatures {
-    const float* own;
-    const float* beside[6];
-    HWY_INLINE Temperatures(const HeatStep& step, std::int64_t word) : own(step.temperature_K + word) {
-        for (int n = 0; n < 6; ++n) beside[n] = own + neighbour(step, n);
-    }
-};
-
-/// sum_alive k_ij (T_j - T_i) of the lanes from cell k of the word on. `mixed`: not all lanes and neighbours are of one
-/// tissue.
+/// Heat that the lanes of a group from cell k on, i of the lattice, get from their neighbours.
 template <bool mixed>
-HWY_INLINE F conduction(const HeatStep& step, const Surroundings& around, const Temperatures& temperature,
-                        std::int64_t word, unsigned k, F own_K, F conductivity) {
+HWY_INLINE F conduction(const HeatStep& step, const CellGroup& group, std::int64_t i, int k, F own_K, F conducted) {
     const D d;
+    const float* temperature = step.temperature_K + i;
     F sum = hn::Zero(d);
     for (int n = 0; n < 6; ++n) {
-        F flow = hn::Sub(hn::LoadU(d, temperature.beside[n] + k), own_K);
+        const std::int64_t offset = n % 2 == 0 ? -step.offset[n / 2] : step.offset[n / 2];
+        F flow = hn::Sub(hn::LoadU(d, temperature + offset), own_K);
         if constexpr (mixed) {
-            const tissue::MaterialIndex* material = step.material + word + neighbour(step, n) + k;
-            const F other = hn::GatherIndex(d, step.properties->conductivity_W_per_mK.data(),
-                                            PropertyLookup<true>::indices(material));
-            flow = hn::Mul(face_conductivity(conductivity, other), flow);
+            const PropertyLookup<true> of(step, group, i + offset);
+            flow = hn::Mul(face_conductivity(conducted, of(step.properties->conducted_J_per_m3K)), flow);
         }
-        sum = hn::Add(sum, hn::IfThenElseZero(mask_of(around.beside[n], k), flow));
+        sum = hn::Add(sum, hn::IfThenElseZero(mask_of(group.beside[n], k), flow));
     }
-    return mixed ? sum : hn::Mul(conductivity, sum);
+    return mixed ? sum : hn::Mul(conducted, sum);
+}
+
+/// Lanes that are at body temperature.
+HWY_INLINE Mask at_rest(F rise) {
+    return hn::Lt(hn::Abs(rise), number(tissue::kRest_K));
 }
 
 /// T from its rise above body temperature.
 HWY_INLINE F temperature_of(const HeatStep& step, F rise) {
-    const Mask rests = hn::Lt(hn::Abs(rise), number(tissue::kRest_K));
-    return hn::Add(number(step.body_K), hn::IfThenZeroElse(rests, rise));
+    return hn::Add(number(step.body_K), hn::IfThenZeroElse(at_rest(rise), rise));
 }
 
 /// Share of blood flow that damage leaves: see kernel_scalar.cpp.
@@ -250,44 +197,34 @@ HWY_INLINE F flow_left(F damage) {
     return hn::Mul(hn::Mul(healthy, healthy), hn::Sub(number(3.0f), hn::Mul(number(2.0f), healthy)));
 }
 
-/// Sums over a block of what every hexel does. They stay in registers.
+/// What every hexel does, over some groups. They stay in registers.
 struct ConductSums {
     CellSum conducted, perfusion, surface;
     HWY_INLINE ConductSums() {}
+    HWY_INLINE void add_to(RunSums& run) const {
+        conducted.add_to(run.conducted.place);
+        perfusion.add_to(run.perfusion.place);
+        surface.add_to(run.surface.place);
+    }
 };
 
-/// Conduction and surroundings of the lanes from cell k of the word on; `before` is their enthalpy. Returns the new
-/// one.
-template <bool pristine, bool mixed>
-HWY_INLINE F conduct(const HeatStep& step, const PropertyLookup<mixed>& of, const Surroundings& around,
-                     const Temperatures& temperature, std::int64_t word, unsigned k, F before, ConductSums& sums) {
+/// Through faces to held tissue and to gas, from `before` on; returns what is left.
+template <bool mixed>
+HWY_INLINE F exchange(const HeatStep& step, const PropertyLookup<mixed>& of, std::int64_t i, F own_K, F rise,
+                      F before) {
     const D d;
     const F zero = hn::Zero(d);
-    const int part = static_cast<int>(k % kGroupCells) / kLanes;
-    const F own_K = hn::Load(d, temperature.own + k), rise = hn::Sub(own_K, number(step.body_K));
-    const F conductivity = of(step.properties->conductivity_W_per_mK);
-    const F flow = conduction<mixed>(step, around, temperature, word, k, own_K, conductivity);
-    F blood = hn::Mul(of(step.properties->blood_W_per_m3K), number(step.dt_s));
-    if constexpr (!pristine) blood = hn::Mul(blood, flow_left(hn::Load(d, step.damage + word + k)));
-    const F conducted = hn::Add(before, hn::Mul(number(step.conduction_factor), flow));
-    const F perfused = hn::Sub(conducted, hn::Mul(blood, rise));
-    const Mask present = mask_of(around.present, k);
-    sums.conducted.add(part, hn::IfThenElseZero(mask_of(around.living, k), hn::Sub(conducted, before)));
-    sums.perfusion.add(part, hn::IfThenElseZero(present, hn::Sub(conducted, perfused)));
-    // Masked stores are slow; absent cells get back what they had.
-    if (lanes_of(around.exposed, k) == 0) return hn::IfThenElse(present, perfused, before);
-    F held = perfused;
-    if (HWY_UNLIKELY(around.by_held != 0)) {
-        const F to_held = hn::Mul(number(step.surface_factor), of(step.properties->held_transfer_W_per_m2K));
-        held = hn::Sub(perfused, hn::Mul(hn::Mul(to_held, faces_of(around.held, k)), rise));
-    }
-    const F to_gas = hn::Mul(number(step.surface_factor), of(step.properties->gas_transfer_W_per_m2K));
-    F gas = hn::Mul(hn::Mul(to_gas, faces_of(around.gas, k)), hn::Sub(own_K, number(step.gas_K)));
+    const auto bytes = [&](const std::uint8_t* from)
+                           HWY_ATTR { return hn::PromoteTo(DI(), hn::LoadU(hn::Rebind<std::uint8_t, D>(), from + i)); };
+    const auto faces = bytes(step.faces);
+    const F share = hn::Mul(hn::ConvertTo(d, bytes(step.share)), number(1.0f / kWholeFace));
+    const F held_faces = hn::Mul(share, hn::ConvertTo(d, hn::ShiftRight<kHeldShift>(faces)));
+    const F gas_faces = hn::Mul(share, hn::ConvertTo(d, hn::And(faces, hn::Set(DI(), kFaceMask))));
+    const F to_held = hn::Mul(of(step.properties->to_held_J_per_m3K), held_faces);
+    const F held = hn::Sub(before, hn::Mul(to_held, rise));
+    F gas = hn::Mul(hn::Mul(of(step.properties->to_gas_J_per_m3K), gas_faces), hn::Sub(own_K, number(step.gas_K)));
     gas = hn::Min(hn::IfThenElseZero(hn::Gt(rise, zero), gas), hn::Max(held, zero));
-    const F next = hn::Sub(held, gas);
-    const F lost = hn::Add(hn::Sub(perfused, held), hn::Sub(held, next));
-    sums.surface.add(part, hn::IfThenElseZero(present, lost));
-    return hn::IfThenElse(present, next, before);
+    return hn::Sub(held, gas);
 }
 
 /// One vector of cells that are hot, dry or may boil: the lanes `living` from cell i on, `part` of their group.
@@ -297,35 +234,31 @@ struct CellVector {
     Mask living;
 };
 
-/// Sums over a block of what hot hexels do.
-struct SettleSums {
-    CellSum gas, latent;
-    Mask warm, hot, spent;
-    HWY_INLINE SettleSums() : warm(none()), hot(none()), spent(none()) {}
-    static HWY_INLINE Mask none() { return hn::FirstN(D(), 0); }
-};
-
-/// Boils the lanes above the boiling point.
+/// Boils the lanes above the boiling point; false when there are none.
 template <bool mixed>
-HWY_INLINE void boil(const HeatStep& step, const PropertyLookup<mixed>& of, const CellVector& at, F capacity, F& water,
-                     F& enthalpy, SettleSums& sums, BlockSums& block) {
+HWY_INLINE bool boil(const HeatStep& step, const PropertyLookup<mixed>& of, const CellVector& at, F capacity, F& water,
+                     F& enthalpy, RunSums& sums, BlockMarks& marks) {
     const D d;
     const F zero = hn::Zero(d), latent_heat = number(static_cast<float>(kLatentHeatOfWater_J_per_kg));
     const F excess = hn::Sub(enthalpy, hn::Mul(capacity, number(step.properties->wet_limit_K)));
     const Mask boils = hn::And(hn::And(hn::Gt(water, zero), hn::Gt(excess, zero)), at.living);
-    if (HWY_LIKELY(hn::AllFalse(d, boils))) return;
+    if (HWY_LIKELY(hn::AllFalse(d, boils))) return false;
     const F wanted = hn::Div(hn::Max(excess, zero), latent_heat);
     const F left = hn::Max(hn::Sub(water, wanted), zero);
     const F steam = hn::IfThenElseZero(boils, hn::Sub(water, left));
     const F after = hn::Sub(enthalpy, hn::Mul(steam, of(step.properties->boil_off_J_per_kg)));
-    sums.gas.add(at.part, hn::IfThenElseZero(boils, hn::Sub(enthalpy, after)));
-    sums.latent.add(at.part, hn::Mul(steam, latent_heat));
+    CellSum gas, latent;
+    gas.add(at.part, hn::IfThenElseZero(boils, hn::Sub(enthalpy, after)));
+    latent.add(at.part, hn::Mul(steam, latent_heat));
+    gas.add_to(sums.gas.place);
+    latent.add_to(sums.latent.place);
     enthalpy = hn::IfThenElse(boils, after, enthalpy);
     water = hn::IfThenElse(boils, left, water);
     hn::Store(enthalpy, d, step.enthalpy_J_per_m3 + at.i);
     hn::Store(water, d, step.water_kg_per_m3 + at.i);
     hn::Store(hn::Add(hn::Load(d, step.steam_kg_per_m3 + at.i), steam), d, step.steam_kg_per_m3 + at.i);
-    block.boiled = true;
+    marks.boiled = true;
+    return true;
 }
 
 /// Peak and Arrhenius' integral over the step of the lanes that are hot enough.
@@ -344,32 +277,30 @@ HWY_INLINE void hurt(const HeatStep& step, const PropertyLookup<mixed>& of, std:
     hn::Store(hn::IfThenElse(hurts, more, damage), d, step.damage + i);
 }
 
-/// Lanes that are not at body temperature. Not "unequal", which some instruction sets deny for what is not a number.
-HWY_INLINE Mask warm_lanes(const HeatStep& step, const CellVector& at, F now_K) {
-    return hn::AndNot(hn::Eq(now_K, number(step.body_K)), at.living);
-}
-
-/// Phases, temperature, peak and damage of what is hot, dry or may boil.
+/// Phases, temperature, peak and damage of what is hot, dry or may boil. True when any lane lost water or took damage.
 template <bool mixed>
-HWY_INLINE void settle(const HeatStep& step, const PropertyLookup<mixed>& of, const CellVector& at, SettleSums& sums,
-                       BlockSums& block) {
+HWY_INLINE bool settle(const HeatStep& step, const PropertyLookup<mixed>& of, const CellVector& at, BlockMarks& marks,
+                       RunSums& sums, HeatSums& shared) {
     const D d;
     const Properties& p = *step.properties;
     const F zero = hn::Zero(d), dry_capacity = of(p.dry_capacity_J_per_m3K);
     const F water_capacity = of(p.water_capacity_J_per_kgK);
     F enthalpy = hn::Load(d, step.enthalpy_J_per_m3 + at.i);
     const Mask bad = hn::AndNot(hn::Lt(hn::Abs(enthalpy), number(1e30f)), at.living);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, bad)) && block.bad_hexel < 0) block.bad_hexel = at.i + hn::FindFirstTrue(d, bad);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, bad)) && shared.bad_hexel < 0)
+        shared.bad_hexel = at.i + hn::FindFirstTrue(d, bad);
 
     F water = hn::Load(d, step.water_kg_per_m3 + at.i), limit = of(p.dry_limit_K);
     Mask dry = at.living;
+    bool changed = false;
     if (step.threshold) {
         const F taken = hn::Max(hn::Sub(enthalpy, of(p.plateau_J_per_m3)), zero);
         const F gone = hn::Div(taken, number(static_cast<float>(kLatentHeatOfWater_J_per_kg)));
         water = hn::IfThenElse(at.living, hn::Max(hn::Sub(of(p.water_kg_per_m3), gone), zero), water);
         hn::Store(water, d, step.water_kg_per_m3 + at.i);
     } else {
-        boil(step, of, at, hn::Add(dry_capacity, hn::Mul(water, water_capacity)), water, enthalpy, sums, block);
+        const F full = hn::Add(dry_capacity, hn::Mul(water, water_capacity));
+        changed = boil(step, of, at, full, water, enthalpy, sums, marks);
         const Mask wet = hn::Gt(water, zero);
         limit = hn::IfThenElse(wet, number(p.wet_limit_K), limit);
         dry = hn::AndNot(wet, at.living);
@@ -378,130 +309,159 @@ HWY_INLINE void settle(const HeatStep& step, const PropertyLookup<mixed>& of, co
     const F rise = hn::Min(hn::Mul(enthalpy, hn::Div(number(1.0f), capacity)), limit);
     const F now_K = temperature_of(step, rise);
     hn::Store(now_K, d, step.next_temperature_K + at.i);
-    sums.warm = hn::Or(sums.warm, warm_lanes(step, at, now_K));
-    sums.spent = hn::Or(sums.spent, hn::And(dry, hn::Ge(enthalpy, of(p.spent_J_per_m3))));
+    marks.warm |= !hn::AllFalse(d, hn::AndNot(at_rest(rise), at.living));
+    marks.spent |= !hn::AllFalse(d, hn::And(dry, hn::Ge(enthalpy, of(p.spent_J_per_m3))));
     const Mask hurts = hn::And(hn::Gt(now_K, number(kDamageThreshold_K)), at.living);
-    if (hn::AllFalse(d, hurts)) return;
-    sums.hot = hn::Or(sums.hot, hurts);
+    if (hn::AllFalse(d, hurts)) return changed;
     hurt(step, of, at.i, hurts, now_K);
+    return true;
 }
 
-/// Settles the vectors of a block whose first cells are listed.
-HWY_NOINLINE void settle_vectors(const HeatStep& step, std::int64_t begin, const std::uint8_t* hot, int count,
-                                 BlockSums& block) {
-    const D d;
-    SettleSums sums;
-    for (int n = 0; n < count; ++n) {
-        const std::int64_t i = begin + std::int64_t{hot[n]} * kLanes;
-        const std::uint64_t living[2] = {word_at(step.living, i), 0};
-        if (lanes_of(living[0], 0) == 0) continue;
-        const CellVector at{i, static_cast<int>(i % kGroupCells) / kLanes, mask_of(living[0], 0)};
-        if (step.group_material[i / kGroupCells] == kMixedGroup)
-            settle(step, PropertyLookup<true>(step, i), at, sums, block);
-        else
-            settle(step, PropertyLookup<false>(step, i), at, sums, block);
+/// Blocks that are worked on together, and what comes of it.
+struct Run {
+    const std::int32_t* blocks;
+    BlockMarks* marks;
+    RunSums sums;
+    /// First cell of a group.
+    HWY_INLINE std::int64_t cell(const HeatStep& step, unsigned place) const {
+        return step.first + blocks[place / kBlockGroups] * kBlockCells + place % kBlockGroups * kGroupCells;
     }
-    if (block.boiled) {
-        block.gas += sums.gas.total();
-        block.latent += sums.latent.total();
+};
+
+/// Groups of a run, told by their place in it.
+struct GroupList {
+    std::uint16_t places[kRunBlocks * kBlockGroups];
+    int count = 0;
+    /// Adds one where `yes`, without a branch. At most as many as there are.
+    HWY_INLINE void add_if(bool yes, unsigned place) {
+        places[count] = static_cast<std::uint16_t>(place);
+        count += yes ? 1 : 0;
     }
-    block.warm |= !hn::AllFalse(d, sums.warm);
-    block.hot |= !hn::AllFalse(d, sums.hot);
-    block.spent |= !hn::AllFalse(d, sums.spent);
+};
+
+HWY_NOINLINE void settle_groups(const HeatStep& step, Run& run, const GroupList& list, HeatSums& shared) {
+    for (int n = 0; n < list.count; ++n) {
+        const unsigned place = list.places[n];
+        const std::int64_t first = run.cell(step, place);
+        CellGroup& group = step.groups[first / kGroupCells];
+        BlockMarks& marks = run.marks[place / kBlockGroups];
+        bool changed = false;
+        for (int part = 0; part < kParts; ++part) {
+            const std::int64_t i = first + part * kLanes;
+            const CellVector at{i, part, mask_at(step.living, i)};
+            if (hn::AllFalse(D(), at.living)) continue;
+            changed |= (group.kind & kMixed) != 0
+                         ? settle(step, PropertyLookup<true>(step, group, i), at, marks, run.sums, shared)
+                         : settle(step, PropertyLookup<false>(step, group, i), at, marks, run.sums, shared);
+        }
+        if (!changed) continue;
+        marks.changed = true;
+        group.kind |= kChanged;
+    }
 }
 
 /// 1 / C of the lanes from cell i on.
-template <bool pristine, bool mixed>
+template <bool changed, bool mixed>
 HWY_INLINE F per_capacity(const HeatStep& step, const PropertyLookup<mixed>& of, std::int64_t i) {
-    if constexpr (pristine) return of(step.properties->per_capacity_alive_m3K_per_J);
+    if constexpr (!changed) return of(step.properties->per_capacity_alive_m3K_per_J);
     const F water = hn::Load(D(), step.water_kg_per_m3 + i);
     const F of_water = hn::Mul(water, of(step.properties->water_capacity_J_per_kgK));
     return hn::Div(number(1.0f), hn::Add(of(step.properties->dry_capacity_J_per_m3K), of_water));
 }
 
-/// Vectors of a block, told by their number.
-struct VectorList {
-    std::uint8_t entries[kBlockCells / kLanes + 1];
-    int count = 0;
-    /// Adds one where `yes`, without a branch.
-    HWY_INLINE void add_if(bool yes, std::int64_t cell) {
-        entries[count] = static_cast<std::uint8_t>(cell / kLanes);
-        count += yes ? 1 : 0;
-    }
+/// What came of a vector.
+struct Outcome {
+    bool warm, hot;  ///< hot: settle() has to see it
 };
 
-/// The lanes from cell k of the word on. True when settle() has to see them.
-template <bool pristine, bool mixed>
-HWY_INLINE bool step_vector(const HeatStep& step, const Surroundings& around, const Temperatures& temperature,
-                            std::int64_t word, unsigned k, ConductSums& sums, Mask& warm) {
+/// The lanes of a group from cell k on, i of the lattice.
+template <bool exposed, bool changed, bool mixed>
+HWY_INLINE Outcome step_vector(const HeatStep& step, const CellGroup& group, std::int64_t i, int k, ConductSums& sums) {
     const D d;
-    const std::int64_t i = word + k;
-    const PropertyLookup<mixed> of(step, i);
+    const PropertyLookup<mixed> of(step, group, i);
+    const Properties& p = *step.properties;
+    const Mask present = mask_of(group.present, k), living = mask_at(step.living, i);
+    const F own_K = hn::Load(d, step.temperature_K + i), rise = hn::Sub(own_K, number(step.body_K));
     const F before = hn::Load(d, step.enthalpy_J_per_m3 + i);
-    const F next = conduct<pristine, mixed>(step, of, around, temperature, word, k, before, sums);
-    hn::Store(next, d, step.enthalpy_J_per_m3 + i);
-    const F rise = hn::Mul(next, per_capacity<pristine>(step, of, i));
-    const F now_K = temperature_of(step, rise);
-    hn::Store(now_K, d, step.next_temperature_K + i);
-    // Not "unequal", which some instruction sets deny for what is not a number.
-    warm = hn::Or(warm, hn::AndNot(hn::Eq(now_K, number(step.body_K)), mask_of(around.living, k)));
-    return !hn::AllTrue(d, hn::Le(rise, number(step.properties->quick_rise_K)));
-}
-
-/// Vectors where tissues meet.
-template <bool pristine>
-HWY_NOINLINE void step_mixed(const HeatStep& step, std::int64_t begin, const VectorList& mixed, VectorList& hot,
-                             BlockSums& block) {
-    ConductSums sums;
-    Mask warm = hn::FirstN(D(), 0);
-    for (int n = 0; n < mixed.count; ++n) {
-        const std::int64_t cell = std::int64_t{mixed.entries[n]} * kLanes,
-                           word = begin + cell / kWordCells * kWordCells;
-        Surroundings around;
-        look_around(step, word, around);
-        const bool is_hot = step_vector<pristine, true>(step, around, Temperatures(step, word), word,
-                                                        static_cast<unsigned>(cell % kWordCells), sums, warm);
-        hot.add_if(is_hot, cell);
+    F blood = of(p.to_blood_J_per_m3K);
+    if constexpr (changed) blood = hn::Mul(blood, flow_left(hn::Load(d, step.damage + i)));
+    const F conducted = hn::Add(before, conduction<mixed>(step, group, i, k, own_K, of(p.conducted_J_per_m3K)));
+    const F perfused = hn::Sub(conducted, hn::Mul(blood, rise));
+    const int part = k / kLanes;
+    sums.conducted.add(part, hn::IfThenElseZero(living, hn::Sub(conducted, before)));
+    sums.perfusion.add(part, hn::IfThenElseZero(present, hn::Sub(conducted, perfused)));
+    F next = perfused;
+    if constexpr (exposed) {
+        next = exchange(step, of, i, own_K, rise, perfused);
+        sums.surface.add(part, hn::IfThenElseZero(present, hn::Sub(perfused, next)));
     }
-    block.conducted += sums.conducted.total();
-    block.perfusion += sums.perfusion.total();
-    block.surface += sums.surface.total();
-    block.warm |= !hn::AllFalse(D(), warm);
+    next = hn::IfThenElse(present, next, before);  // masked stores are slow; absent cells get back what they had
+    hn::Store(next, d, step.enthalpy_J_per_m3 + i);
+    const F next_rise = hn::Mul(next, per_capacity<changed>(step, of, i));
+    hn::Store(temperature_of(step, next_rise), d, step.next_temperature_K + i);
+    return {!hn::AllFalse(d, hn::AndNot(at_rest(next_rise), living)),
+            !hn::AllTrue(d, hn::Le(next_rise, number(p.quick_rise_K)))};
 }
 
-template <bool pristine>
-HWY_INLINE void step_block(const HeatStep& shared, std::int64_t begin, std::int64_t end, BlockSums& block) {
+/// Calls for what a group will want from memory, so that it is there in time.
+HWY_INLINE void call_for(const HeatStep& step, std::int64_t cell) {
+    hwy::Prefetch(step.temperature_K + cell);
+    hwy::Prefetch(step.temperature_K + cell + step.furthest);
+    hwy::Prefetch(step.enthalpy_J_per_m3 + cell);
+    hwy::Prefetch(step.next_temperature_K + cell);
+}
+
+/// Groups of one kind.
+template <bool exposed, bool changed, bool mixed>
+HWY_NOINLINE void step_groups(const HeatStep& shared, Run& run, const GroupList& list, GroupList& hot) {
+    constexpr int kInFloats = 16;  // sums of so many groups lose nothing that matters
+    constexpr int kAhead = 8;      // groups, about the time that memory takes
     const HeatStep step = shared;  // a copy of its own stays in registers
-    ConductSums sums;
-    Mask warm = hn::FirstN(D(), 0);
-    VectorList hot, mixed;
-    for (std::int64_t word = begin; word < end; word += kWordCells) {
-        if (word_at(step.present, word) == 0) continue;
-        Surroundings around;
-        look_around(step, word, around);
-        const Temperatures temperature(step, word);
-#pragma GCC unroll 4
-        for (unsigned k = 0; k < kWordCells; k += kLanes) {
-            if (lanes_of(around.present, k) == 0) continue;
-            const std::int64_t cell = word - begin + k;
-            if (HWY_UNLIKELY(step.group_material[(word + k) / kGroupCells] == kMixedGroup)) {
-                mixed.add_if(true, cell);
-                continue;
+    for (int from = 0; from < list.count; from += kInFloats) {
+        const int to = from + kInFloats < list.count ? from + kInFloats : list.count;
+        ConductSums sums;
+        for (int n = from; n < to; ++n) {
+            const unsigned place = list.places[n];
+            if (n + kAhead < list.count) call_for(step, run.cell(step, list.places[n + kAhead]));
+            const std::int64_t first = run.cell(step, place);
+            const CellGroup& group = step.groups[first / kGroupCells];
+            Outcome any{false, false};
+            for (int k = 0; k < kGroupCells; k += kLanes) {
+                const Outcome one = step_vector<exposed, changed, mixed>(step, group, first + k, k, sums);
+                any = {any.warm || one.warm, any.hot || one.hot};
             }
-            const bool is_hot = step_vector<pristine, false>(step, around, temperature, word, k, sums, warm);
-            hot.add_if(is_hot, cell);
+            run.marks[place / kBlockGroups].warm |= any.warm;
+            hot.add_if(any.hot, place);
+        }
+        sums.add_to(run.sums);
+    }
+}
+
+void step_blocks(const HeatStep& step, const std::int32_t* blocks, int count, BlockMarks* marks, HeatSums& sums) {
+    Run run{blocks, marks, {}};
+    GroupList kinds[kMixed + 1], hot;
+    for (int b = 0; b < count; ++b) {
+        marks[b] = {};
+        const std::int64_t begin = step.first + blocks[b] * kBlockCells, past = begin + kBlockCells;
+        if (step.joule.density != nullptr) deposit(step, begin, past < step.last ? past : step.last, run.sums);
+        const CellGroup* groups = step.groups + begin / kGroupCells;
+        for (unsigned g = 0; g < kBlockGroups; ++g) {
+            const unsigned kind = groups[g].kind < kMixed ? groups[g].kind : unsigned{kMixed};
+            kinds[kind].add_if(groups[g].present != 0, static_cast<unsigned>(b) * kBlockGroups + g);
         }
     }
-    block.conducted += sums.conducted.total();
-    block.perfusion += sums.perfusion.total();
-    block.surface += sums.surface.total();
-    block.warm |= !hn::AllFalse(D(), warm);
-    if (mixed.count > 0) step_mixed<pristine>(shared, begin, mixed, hot, block);
-    if (hot.count > 0) settle_vectors(shared, begin, hot.entries, hot.count, block);
-}
-
-void step_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, bool pristine, BlockSums& sums) {
-    pristine ? step_block<true>(step, begin, end, sums) : step_block<false>(step, begin, end, sums);
+    step_groups<false, false, false>(step, run, kinds[kPlain], hot);
+    step_groups<true, false, false>(step, run, kinds[kExposed], hot);
+    step_groups<false, true, false>(step, run, kinds[kChanged], hot);
+    step_groups<true, true, false>(step, run, kinds[kExposed | kChanged], hot);
+    step_groups<true, true, true>(step, run, kinds[kMixed], hot);
+    settle_groups(step, run, hot, sums);
+    sums.delivered += run.sums.delivered.total();
+    sums.conducted += run.sums.conducted.total();
+    sums.perfusion += run.sums.perfusion.total();
+    sums.surface += run.sums.surface.total();
+    sums.gas += run.sums.gas.total();
+    sums.latent += run.sums.latent.total();
 }
 
 }  // namespace HWY_NAMESPACE
@@ -511,14 +471,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace calot::thermal {
 
-HWY_EXPORT(deposit_cells);
-HWY_EXPORT(step_cells);
+HWY_EXPORT(step_blocks);
 
-void deposit_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, BlockSums& sums) {
-    HWY_DYNAMIC_DISPATCH(deposit_cells)(step, begin, end, sums);
-}
-void step_cells(const HeatStep& step, std::int64_t begin, std::int64_t end, bool pristine, BlockSums& sums) {
-    HWY_DYNAMIC_DISPATCH(step_cells)(step, begin, end, pristine, sums);
+void step_blocks(const HeatStep& step, const std::int32_t* blocks, int count, BlockMarks* marks, HeatSums& sums) {
+    HWY_DYNAMIC_DISPATCH(step_blocks)(step, blocks, count, marks, sums);
 }
 
 }  // namespace calot::thermal

@@ -9,6 +9,19 @@ namespace calot::thermal {
 
 namespace {
 
+/// Two resistances in series: the surroundings' and half a cell's.
+double transfer_W_per_m2K(const tissue::Model& model, double surroundings_W_per_m2K, double conductivity_W_per_mK) {
+    if (conductivity_W_per_mK <= 0.0) return 0.0;
+    const double h = surroundings_W_per_m2K;
+    return h / (1.0 + 0.5 * h * model.hexels.spacing_m / conductivity_W_per_mK);
+}
+
+double blood_W_per_m3K(const tissue::Model& model, const tissue::Material& material) {
+    return material.perfusion_m3_per_s_kg * material.density_kg_per_m3 * model.thermal.blood_density_kg_per_m3 *
+               model.thermal.blood_specific_heat_J_per_kgK +
+           material.vessel_transfer_W_per_m3K;
+}
+
 /// Explicit Euler obeys the maximum principle while no hexel can give more than it has above its surroundings:
 /// dt (sum over faces of the strongest exchange + perfusion) <= C, with C least when dry. For one material and no
 /// surroundings that is s_h^2 / 6a.
@@ -21,20 +34,13 @@ double longest_step_s(const tissue::Model& model, const Properties& p) {
     for (std::size_t m = 1; m < model.materials.size(); ++m) {
         const double own = model.materials[m].thermal_conductivity_W_per_mK;
         if (own <= 0.0) continue;
-        const double transfer =
-            static_cast<double>(std::max(p.gas_transfer_W_per_m2K[m], p.held_transfer_W_per_m2K[m]));
+        const double transfer = std::max(transfer_W_per_m2K(model, model.thermal.gas_transfer_W_per_m2K, own),
+                                         transfer_W_per_m2K(model, model.thermal.held_transfer_W_per_m2K, own));
         const double face = std::max(2.0 * own * strongest / (own + strongest) / (s * s), transfer / s);
-        const double rate = 6.0 * face + static_cast<double>(p.blood_W_per_m3K[m]);
+        const double rate = 6.0 * face + blood_W_per_m3K(model, model.materials[m]);
         longest = std::min(longest, static_cast<double>(p.dry_capacity_J_per_m3K[m]) / rate);
     }
     return longest;
-}
-
-/// Two resistances in series: the surroundings' and half a cell's.
-float transfer_W_per_m2K(double surroundings_W_per_m2K, double conductivity_W_per_mK, double spacing_m) {
-    if (conductivity_W_per_mK <= 0.0) return 0.0f;
-    const double h = surroundings_W_per_m2K;
-    return static_cast<float>(h / (1.0 + 0.5 * h * spacing_m / conductivity_W_per_mK));
 }
 
 }  // namespace
@@ -53,14 +59,6 @@ Properties Properties::make(const tissue::Model& model) {
         const PhaseCurve curve = PhaseCurve::make(thermal, material);
         const double density = material.density_kg_per_m3;
         const double water = density * material.water_mass_fraction, solids = density - water;
-        p.conductivity_W_per_mK[m] = static_cast<float>(material.thermal_conductivity_W_per_mK);
-        const double k = material.thermal_conductivity_W_per_mK, s = model.hexels.spacing_m;
-        p.gas_transfer_W_per_m2K[m] = transfer_W_per_m2K(thermal.gas_transfer_W_per_m2K, k, s);
-        p.held_transfer_W_per_m2K[m] = transfer_W_per_m2K(thermal.held_transfer_W_per_m2K, k, s);
-        p.blood_W_per_m3K[m] =
-            static_cast<float>(material.perfusion_m3_per_s_kg * density * thermal.blood_density_kg_per_m3 *
-                                   thermal.blood_specific_heat_J_per_kgK +
-                               material.vessel_transfer_W_per_m3K);
         p.dry_capacity_J_per_m3K[m] = curve.dry_capacity_J_per_m3K;
         p.water_capacity_J_per_kgK[m] = curve.water_capacity_J_per_kgK;
         p.dry_limit_K[m] = curve.dry_limit_K;
@@ -84,27 +82,23 @@ Properties Properties::make(const tissue::Model& model) {
         p.damage_slope[m] = static_cast<float>(slope);
         p.damage_log_rate[m] = static_cast<float>(log_rate);
     }
+    p.few = model.materials.size() <= 16;
     p.longest_step_s = static_cast<float>(thermal::longest_step_s(model, p));
+    p.set_step(model, static_cast<double>(p.longest_step_s));
     return p;
 }
 
-Array<std::uint8_t> group_materials(const tissue::Model& model) {
-    const Lattice& lattice = model.hexels;
-    Array<std::uint8_t> groups(static_cast<std::size_t>(lattice.cells / kGroupCells + 1), tissue::kNoMaterial);
-    for (std::int64_t cell = lattice.first; cell < lattice.last; ++cell) {
-        if (!model.hexel_initial.test(cell)) continue;
-        std::uint8_t& group = groups[static_cast<std::size_t>(cell / kGroupCells)];
-        auto see = [&](std::int64_t other) {
-            const tissue::MaterialIndex material = model.hexel_material[static_cast<std::size_t>(other)];
-            if (group == tissue::kNoMaterial) group = material;
-            if (group != material) group = kMixedGroup;
-        };
-        see(cell);
-        for (int axis = 0; axis < 3; ++axis)
-            for (const std::int64_t other : {cell - lattice.stride[axis], cell + lattice.stride[axis]})
-                if (model.hexel_initial.test(other)) see(other);
+void Properties::set_step(const tissue::Model& model, double dt_s) {
+    const double s = model.hexels.spacing_m;
+    for (std::size_t m = 1; m < model.materials.size(); ++m) {
+        const double k = model.materials[m].thermal_conductivity_W_per_mK;
+        conducted_J_per_m3K[m] = static_cast<float>(dt_s * k / (s * s));
+        to_gas_J_per_m3K[m] =
+            static_cast<float>(dt_s / s * transfer_W_per_m2K(model, model.thermal.gas_transfer_W_per_m2K, k));
+        to_held_J_per_m3K[m] =
+            static_cast<float>(dt_s / s * transfer_W_per_m2K(model, model.thermal.held_transfer_W_per_m2K, k));
+        to_blood_J_per_m3K[m] = static_cast<float>(dt_s * blood_W_per_m3K(model, model.materials[m]));
     }
-    return groups;
 }
 
 }  // namespace calot::thermal

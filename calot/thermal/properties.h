@@ -21,21 +21,18 @@ inline constexpr float kDamageThreshold_K = 316.15f;
 inline constexpr float kDamageReference_K = 333.15f;  ///< rates are held in log space relative to theirs at 60 C
 inline constexpr float kDamageLimit = 1e6f;           ///< Omega saturates
 
-/// Cells come in groups of 16. Work::group_material names the material of the hexels of a group and of all their
-/// neighbours, where it is the same; else:
-inline constexpr std::uint8_t kMixedGroup = 255;
-inline constexpr int kGroupCells = 16;
-
 using tissue::PhaseCurve;
 
 struct Properties {
     template <class T>
     using PerMaterial = std::array<T, 256>;
 
-    alignas(64) PerMaterial<float> conductivity_W_per_mK{};
-    PerMaterial<float> gas_transfer_W_per_m2K{};        ///< from a hexel's centre to gas, see below
-    PerMaterial<float> held_transfer_W_per_m2K{};       ///< and to held tissue
-    PerMaterial<float> blood_W_per_m3K{};               ///< to blood: w_b rho_b c_b, and what streams through vessels
+    // What a hexel exchanges in a step and per kelvin [J/(m^3 K)]; see set_step
+    alignas(64) PerMaterial<float> conducted_J_per_m3K{};  ///< through a face to its like: dt k / s_h^2
+    PerMaterial<float> to_gas_J_per_m3K{};                 ///< through a face to gas: dt h / s_h
+    PerMaterial<float> to_held_J_per_m3K{};                ///< and to held tissue
+    PerMaterial<float> to_blood_J_per_m3K{};  ///< dt w_b rho_b c_b, with what streams through vessels
+
     PerMaterial<float> dry_capacity_J_per_m3K{};        ///< C(0)
     PerMaterial<float> water_capacity_J_per_kgK{};      ///< c_w
     PerMaterial<float> per_capacity_alive_m3K_per_J{};  ///< 1 / C with all water
@@ -51,10 +48,11 @@ struct Properties {
     float quick_rise_K = 0.0f;             ///< up to here nothing boils, is hurt or changes phase
     float longest_step_s = 0.0f;           ///< stable for every material and pair of materials
 
-    static Properties make(const tissue::Model& model);
-};
+    bool few = false;                      ///< all materials are among the first 16
 
-/// Work::group_material of a model.
-Array<std::uint8_t> group_materials(const tissue::Model& model);
+    /// For steps of the longest stable length.
+    static Properties make(const tissue::Model& model);
+    void set_step(const tissue::Model& model, double dt_s);
+};
 
 }  // namespace calot::thermal

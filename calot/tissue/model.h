@@ -67,7 +67,7 @@ struct ElectricParameters {
 /// Heat (section 6).
 struct ThermalParameters {
     PhaseModel phase_model = PhaseModel::water_then_solids;
-    int refresh_ticks = 4;                   ///< conduction is stepped every so many ticks
+    int refresh_ticks = 8;                   ///< conduction is stepped every so many ticks
     double body_temperature_K = 310.15;      ///< T_0, also of arterial blood
     double gas_temperature_K = 306.15;       ///< insufflated carbon dioxide
     double gas_transfer_W_per_m2K = 20.0;    ///< h_c of faces towards gas

@@ -21,7 +21,7 @@ inline tissue::Model burn_model(const Int3& size = {40, 34, 22},
     });
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) model.hexel_held.set(model.hexels.index(x, y, 0));
-    model.thermal.refresh_ticks = 4;
+    model.thermal.refresh_ticks = tissue::ThermalParameters{}.refresh_ticks;
     model.thermal.phase_model = phase;
     return model;
 }

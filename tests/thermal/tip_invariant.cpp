@@ -27,7 +27,7 @@ std::vector<tissue::Capsule> hook_wire() {
 HeatRun touched_block() {
     const auto all = tissue::default_materials();
     tissue::Model model = box_model({12, 12, 12}, 0.6e-3, 1e-3, {all[tissue::find_material(all, "liver")]});
-    model.thermal.refresh_ticks = 4;
+    model.thermal.refresh_ticks = tissue::ThermalParameters{}.refresh_ticks;
     HeatRun run(std::move(model));
     run.exchange.capsules = hook_wire();
     for (int x = 2; x < 10; ++x)
