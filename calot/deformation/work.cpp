@@ -1,6 +1,7 @@
 #include "calot/deformation/work.h"
 
 #include "calot/deformation/integrate.h"
+#include "calot/deformation/rest.h"
 #include "calot/deformation/kernel.h"
 #include "calot/deformation/topology.h"
 
@@ -19,6 +20,7 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     for (auto& component : work.own_force_N) component.assign(cells, 0.0f);
     for (auto& component : work.step_sum) component.assign(cells, 0.0f);
     work.link_word.assign(cells, 0);
+    work.volume_share = volume_shares(model);
     work.groups = make_groups(model, state);
     work.touched_groups.reserve(work.groups.size());
     work.contact = make_contact_work(model);

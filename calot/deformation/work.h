@@ -38,6 +38,7 @@ struct Work {
     Array<std::uint64_t>
         occupancy;  ///< surviving hexels of the main component; bit x + m (y + m z), local coordinates; 0 for ghosts
     std::array<Array<float>, 6> moment_inverse;  ///< A^-1 [1/m^2], symmetric: xx xy xz yy yz zz; zero = no own stress
+    Array<float> volume_share;                   ///< v over the volume of a phyxel's own hexels, before burning (rest.h)
     Array<float> volume_m3;                      ///< v, effective (scaled down when poorly linked)
     Array<float> inverse_mass_per_kg;            ///< of the mass that moves, 0 = absent or ghost
     Array<float> gravity_share;                  ///< mass that weighs / mass that moves (stable_mass.h), 0 = absent
