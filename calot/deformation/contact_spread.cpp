@@ -9,7 +9,7 @@ namespace calot::deformation {
 namespace {
 
 /// Link weights of three neighbours in a row of x, where the bits of a link word say that they live; a fourth lane is
-/// 0. The row beside the carrier has edges, faces, edges (1 8 1), the carrier's own two faces (8 . 8), a diagonal one a
+/// 0. The row beside the carrier has edges, faces, edges (1 f 1), the carrier's own two faces (f . f), a diagonal one a
 /// single edge (. 1 .).
 struct RowWeights {
     std::array<std::array<std::array<float, 4>, 8>, 3> of;  ///< [|dy| + |dz|][bits]

@@ -5,7 +5,7 @@
 //
 // so that halfway between, at the held face itself, displacement is that of the organ: zero, or what it is moved by.
 // With u_ghost = 0 (a fixed layer) it vanishes at the ghosts' centres, half a cell too deep: held blocks 4 to 12 cells
-// deep then sag by 7 to 16 % too much, with images by -0.3 to 7 % (tests/deformation/elasticity_convergence.cpp).
+// deep then sag by 7 to 16 % too much, with images by less than 5 % (docs/validation.md).
 // Energies are of phyxels alone; what they pull at a ghost acts, by the chain rule, on the phyxels that it mirrors.
 
 #include "calot/deformation/work.h"

@@ -6,7 +6,7 @@
 //
 //      Group::plus[d]:  ... 1 1 0 1 1 1 0 0 ...      lanes of cell i .. i + N - 1
 //
-// Sums run over faces first (weight 8, applied once), then edges (weight 1). Lengths are in units of the spacing s
+// Sums run over faces first (their weight is applied once), then edges (weight 1). Lengths are in units of the spacing s
 // until the end. Multiplication and addition stay separate so that instruction sets with and without fused
 // multiply-add give the same bytes.
 //
@@ -21,6 +21,7 @@
 #include <hwy/foreach_target.h>
 
 #include "calot/base/simd.h"
+#include "calot/deformation/links.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace calot::deformation {
@@ -29,6 +30,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 namespace simd = calot::HWY_NAMESPACE::simd;
 
 using D = simd::Floats;
+constexpr float kFace = static_cast<float>(kFaceWeight);  ///< edges weigh 1
 using Mask = hn::Mask<D>;
 
 /// A vector of floats with ordinary arithmetic.
@@ -116,7 +118,7 @@ HWY_INLINE void add_links(const KernelView& k, const Place& at, const Lanes (&u)
         const Lanes difference = up - down;
         force[r] = force[r] + (stiffness_plus * up + stiffness_minus * down);
         if constexpr (Dir::face) {
-            b[3 * r + Dir::first] = all(8.0f) * difference;
+            b[3 * r + Dir::first] = all(kFace) * difference;
         } else {
             b[3 * r + Dir::first] = b[3 * r + Dir::first] + difference;
             b[3 * r + Dir::second] = along<d>(b[3 * r + Dir::second], difference);
@@ -134,7 +136,7 @@ HWY_INLINE void add_all_links(const KernelView& k, const Place& at, Lanes hourgl
     add_links<0>(k, at, u, hourglass, b, force);
     add_links<1>(k, at, u, hourglass, b, force);
     add_links<2>(k, at, u, hourglass, b, force);
-    for (int r = 0; r < 3; ++r) force[r] = all(8.0f) * force[r];
+    for (int r = 0; r < 3; ++r) force[r] = all(kFace) * force[r];
     add_links<3>(k, at, u, hourglass, b, force);
     add_links<4>(k, at, u, hourglass, b, force);
     add_links<5>(k, at, u, hourglass, b, force);
@@ -325,7 +327,7 @@ HWY_INLINE void velocities_of(const KernelView& k, const Place& at) {
     add_stresses<0>(k, at, sum);
     add_stresses<1>(k, at, sum);
     add_stresses<2>(k, at, sum);
-    for (int r = 0; r < 3; ++r) sum[r] = all(8.0f) * sum[r];
+    for (int r = 0; r < 3; ++r) sum[r] = all(kFace) * sum[r];
     add_stresses<3>(k, at, sum);
     add_stresses<4>(k, at, sum);
     add_stresses<5>(k, at, sum);

@@ -8,9 +8,10 @@
 
 namespace calot::deformation {
 
-/// Weights of the kernel w = (h^2 - r^2)^3 with h = sqrt(3) s (Pan et al. 2019, Eq. 3), in units of s^6: w only ever
-/// appears in ratios.
-inline constexpr double kFaceWeight = 8.0;
+/// Weights of the kernel w = (h^2 - r^2)^3 with h = sqrt(2.5) s (Pan et al. 2019, Eq. 3), in units of s^6 / 8: w only
+/// ever appears in ratios. Edges count little: at a free surface they lead inward alone, so that the strain along the
+/// surface is seen too deep by s / 11 with 8 : 1 (h = sqrt(3) s), by s / 28 with 27 : 1 (docs/validation.md).
+inline constexpr double kFaceWeight = 27.0;
 inline constexpr double kEdgeWeight = 1.0;
 
 /// Calls visit(neighbour cell, step in cells from here to there, weight) for every live link of a phyxel.

@@ -77,7 +77,7 @@ double initial_trace(const Model& model, std::int64_t phyxel) {
     const bool real = model.phyxel_initial.test(phyxel);
     for (std::size_t d = 0; d < tissue::kLinkDirections.size(); ++d) {
         const std::int64_t offset = model.phyxels.offset(tissue::kLinkDirections[d]);
-        // w |X|^2: 8 * 1 for faces, 1 * 2 for edges
+        // w |X|^2
         const double term = static_cast<int>(d) < tissue::kFaceDirections ? kFaceWeight : 2.0 * kEdgeWeight;
         for (const std::int64_t other : {phyxel + offset, phyxel - offset})
             if (model.phyxel_initial.test(other) || (real && model.phyxel_ghost.test(other))) trace += term;
@@ -94,11 +94,61 @@ void fill_from_hexels(const Model& model, const Work& work, std::int64_t phyxel,
     rest.mass_kg = content.density * hexel_m3;
     rest.mu_Pa = content.mu / content.hexels;
     rest.lambda_Pa = content.lambda / content.hexels;
-    const double fill = static_cast<double>(content.hexels) / model.hexels_per_phyxel();
-    rest.moving_mass_kg = rest.mass_kg * std::max(1.0, model.deformation.mass_fraction_floor / fill);
+    rest.fill = static_cast<double>(content.hexels) / model.hexels_per_phyxel();
+    rest.moving_mass_kg = rest.mass_kg * std::max(1.0, model.deformation.mass_fraction_floor / rest.fill);
+}
+
+/// How much more hourglass control a phyxel gets at a free surface.
+///
+/// There its links lead inward alone: strain across the surface is that of a place half a cell deeper, and the phyxel
+/// gives way to what this makes of its neighbours' stress. For stress that grows with depth, as it does below a free
+/// surface, the force that is too much goes as fill^2 - fill/2 + 1/4, fill = share of the cell that is tissue. Only
+/// hourglass control resists. The factor is chosen so that bars in bending and in torsion come within 3 % from 5 cells
+/// across on, with their outer cells full and half full (docs/validation.md).
+double surface_factor(double trace, double fill) {
+    constexpr double kInside = 6.0 * kFaceWeight + 12.0 * 2.0 * kEdgeWeight, kSurface = 10.0;
+    return 1.0 + kSurface * (1.0 - trace / kInside) * fill * fill;
 }
 
 }  // namespace
+
+Array<float> volume_shares(const Model& model) {
+    const int m = model.hexels_per_edge;
+    const auto cells = static_cast<std::size_t>(model.phyxels.cells);
+    std::vector<double> own(cells, 0.0), volume(cells, 0.0);
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
+        if (!model.phyxel_initial.test(p)) continue;
+        const Int3 low = model.phyxels.coordinates(p) * m;
+        Vec3 centroid(0.0);  // of its hexels, from the centre of the cell, in spacings
+        double count = 0.0;
+        for (int z = 0; z < m; ++z)
+            for (int y = 0; y < m; ++y)
+                for (int x = 0; x < m; ++x)
+                    if (model.hexel_initial.test(model.hexels.index(low + Int3(x, y, z)))) {
+                        centroid += (Vec3(x, y, z) + 0.5) / static_cast<double>(m) - 0.5;
+                        count += 1.0;
+                    }
+        centroid /= count;
+        own[static_cast<std::size_t>(p)] = count;
+        for (int corner = 0; corner < 8; ++corner) {
+            double weight = count;
+            Int3 step(0);
+            for (int axis = 0; axis < 3; ++axis) {
+                const double away = std::abs(centroid[axis]);
+                const bool beyond = (corner >> axis) & 1;
+                weight *= beyond ? away : 1.0 - away;
+                if (beyond) step[axis] = centroid[axis] < 0.0 ? -1 : 1;
+            }
+            const std::int64_t to = p + model.phyxels.offset(step);
+            volume[static_cast<std::size_t>(model.phyxel_initial.test(to) ? to : p)] += weight;
+        }
+    }
+    Array<float> share;
+    share.assign(cells, 1.0f);
+    for (std::size_t p = 0; p < cells; ++p)
+        if (own[p] > 0.0) share[p] = static_cast<float>(volume[p] / own[p]);
+    return share;
+}
 
 PhyxelRest phyxel_rest(const Model& model, const State& state, const Work& work, std::int64_t phyxel) {
     PhyxelRest rest;
@@ -118,9 +168,11 @@ PhyxelRest phyxel_rest(const Model& model, const State& state, const Work& work,
     const double s2 = model.phyxels.spacing_m * model.phyxels.spacing_m;
     rest.moment_inverse_per_m2 = glm::inverse(a) / s2;
     if (ghost) return rest;
-    rest.volume_m3 *= std::min(1.0, trace / initial_trace(model, phyxel));
+    rest.volume_m3 *= static_cast<double>(work.volume_share[static_cast<std::size_t>(phyxel)]) *
+                      std::min(1.0, trace / initial_trace(model, phyxel));
     const double youngs = rest.mu_Pa * (3.0 * rest.lambda_Pa + 2.0 * rest.mu_Pa) / (rest.lambda_Pa + rest.mu_Pa);
-    rest.hourglass_N_per_m = model.deformation.hourglass_alpha * youngs * rest.volume_m3 / (trace * s2);
+    rest.hourglass_N_per_m = model.deformation.hourglass_alpha * surface_factor(trace, rest.fill) * youngs *
+                             rest.volume_m3 / (trace * s2);
     return rest;
 }
 

@@ -1,6 +1,7 @@
 #include "calot/deformation/work.h"
 
 #include "calot/deformation/integrate.h"
+#include "calot/deformation/rest.h"
 #include "calot/deformation/kernel.h"
 #include "calot/deformation/stable_mass.h"
 #include "calot/deformation/topology.h"
@@ -23,6 +24,7 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     work.raise.assign(cells, 1.0f);
     work.raised.reserve(cells);
     work.link_word.assign(cells, 0);
+    work.volume_share = volume_shares(model);
     work.groups = make_groups(model, state);
     work.touched_groups.reserve(work.groups.size());
     work.near_lanes.reserve(work.groups.size());

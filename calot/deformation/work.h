@@ -39,6 +39,7 @@ struct Work {
     Array<std::uint64_t>
         occupancy;  ///< surviving hexels of the main component; bit x + m (y + m z), local coordinates; 0 for ghosts
     std::array<Array<float>, 6> moment_inverse;  ///< A^-1 [1/m^2], symmetric: xx xy xz yy yz zz; zero = no own stress
+    Array<float> volume_share;                   ///< v over the volume of a phyxel's own hexels, before burning (rest.h)
     Array<float> volume_m3;                      ///< v, effective (scaled down when poorly linked)
     Array<float> weighing_mass_kg;               ///< of the hexels that are left; 0 = absent or ghost
     Array<float> moving_mass_kg;                 ///< the same, with the floor of Model's mass_fraction_floor

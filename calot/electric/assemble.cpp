@@ -104,7 +104,7 @@ void list_entries(const tissue::Model& model, const tissue::Exchange& exchange, 
         work.entered.set(cell);
         work.electrode_cells.push_back(cell);
         work.near_of_entry.push_back(static_cast<std::int32_t>(n));
-        work.entries.push_back({cell, 0.0f});
+        work.entries.push_back({cell, 0.0f, 0.0f});
         work.centre += Vec3(place);
     }
     if (!work.entries.empty()) work.centre /= static_cast<double>(work.entries.size());
@@ -146,11 +146,14 @@ void connect_entries(const tissue::Model& model, const tissue::State& state, con
         const double sigma = static_cast<double>(work.sigma_S_per_m[static_cast<std::size_t>(entry.cell)]);
         double inverse = 1.0 / (2.0 * sigma * faces) + char_m / (p.char_conductivity_S_per_m * s * faces);
         const double gap_m = static_cast<double>(near.bare_gap_m);
+        double arc = 0.0;
         if (gap_m > p.contact_gap_m) {
-            inverse += s * (p.arc_resistance_Ohm + p.arc_resistance_Ohm_per_m * gap_m);
+            arc = s * (p.arc_resistance_Ohm + p.arc_resistance_Ohm_per_m * gap_m);
+            inverse += arc;
             ++work.arcs;
         }
         entry.g = static_cast<float>(1.0 / inverse);
+        entry.wire = static_cast<float>(p.arc_wire_share * arc / inverse);
     }
 }
 

@@ -2,8 +2,8 @@
 //
 // A face between cells 1 and 2 carries J = g (phi_1 - phi_2) through half a cell of sigma_1 and half a cell of sigma_2
 // in series. Each half heats its own cell with J^2 / (2 sigma), so that both halves make g dphi^2 together and the sum
-// over all cells is V I to the last digit. What char and arcs take heats the hexel that the current enters. All per
-// volt squared and per spacing of hexels until the end.
+// over all cells is V I to the last digit. Char heats the hexel that the current enters, arcs that hexel and
+// the wire (contact.h). All per volt squared and per spacing of hexels until the end.
 
 #include <algorithm>
 #include <cmath>
@@ -15,24 +15,31 @@ namespace calot::electric {
 
 namespace {
 
-/// Faces that are not in the matrix: at the metal, and to the far return. Returns what is lost beyond the window.
-double add_fixed_faces(Work& work, const Cells phi, float scale, Cells heat) {
+/// What is not in the tissue's hexels.
+struct Elsewhere {
+    double wire = 0.0, beyond = 0.0;  ///< in the metal; lost beyond the window
+};
+
+/// Faces that are not in the matrix: at the metal, and to the far return.
+Elsewhere add_fixed_faces(Work& work, const Cells phi, float scale, Cells heat) {
     double current = 0.0;
+    Elsewhere elsewhere;
     for (const Entry& entry : work.entries) {
         const auto cell = static_cast<std::size_t>(entry.cell);
         const float drop = 1.0f - scale * phi[cell], flow = entry.g * drop;
-        heat[cell] += flow * drop;
+        const float wire = entry.wire * (flow * drop);
+        heat[cell] += flow * drop - wire;
+        elsewhere.wire += static_cast<double>(wire);
         current += static_cast<double>(flow);
     }
-    double beyond = 0.0;
     for (const OuterFace& face : work.outer_faces) {
         const auto cell = static_cast<std::size_t>(face.cell);
         const float level = scale * phi[cell], all = face.g * level * level, inside = face.inside * all;
         heat[cell] += inside;
-        beyond += static_cast<double>(all - inside);
+        elsewhere.beyond += static_cast<double>(all - inside);
     }
     work.electrode_conductance_S = current;
-    return beyond;
+    return elsewhere;
 }
 
 /// Heat of present hexels into the state, and its sums.
@@ -73,7 +80,7 @@ void find_heat(const tissue::Model& model, tissue::State& state, Work& work, dou
                  [&](std::int64_t b, std::int64_t e) {
                      work.grid.kernels.heat(fine, work.sigma_S_per_m.data(), phi.data(), factor, heat.data(), b, e);
                  });
-    const double beyond = add_fixed_faces(work, phi, static_cast<float>(scale), heat);
+    const Elsewhere elsewhere = add_fixed_faces(work, phi, static_cast<float>(scale), heat);
     keep_heat(model, state, work, heat);
 
     const double s = model.hexels.spacing_m;
@@ -86,8 +93,9 @@ void find_heat(const tissue::Model& model, tissue::State& state, Work& work, dou
         // Heat is q s^2, and q = J^2 / sigma.
         state.stray_density_S_per_m2[m] = std::sqrt(static_cast<double>(work.sums.greatest[m])) / s;
     }
-    state.field.elsewhere_S = s * (beyond + total(work.sums.rest));
-    work.conductance_S = state.field.tissue_S + state.field.elsewhere_S;
+    state.field.elsewhere_S = s * (elsewhere.beyond + total(work.sums.rest));
+    state.field.wire_S = s * elsewhere.wire;
+    work.conductance_S = state.field.conductance_S();
     work.electrode_conductance_S *= s;
 }
 

@@ -60,7 +60,7 @@ void drive_load(const tissue::Model& model, tissue::State& state, tissue::Exchan
                 const tissue::Input& input) {
     const tissue::FieldState& field = state.field;
     const bool on = field.solved != 0;
-    state.generator = drive(input, model.electric, on ? field.tissue_S + field.elsewhere_S : 0.0);
+    state.generator = drive(input, model.electric, on ? field.conductance_S() : 0.0);
     const double volt = on ? state.generator.voltage_V : 0.0,
                  volt2 = state.generator.current_A > 0.0 ? volt * volt : 0.0;
     tissue::JouleHeat& joule = exchange.joule;
@@ -69,6 +69,7 @@ void drive_load(const tissue::Model& model, tissue::State& state, tissue::Exchan
     joule.scale = static_cast<float>(volt2);
     joule.total_W = field.tissue_S * volt2;
     joule.outflow_W = field.elsewhere_S * volt2;
+    joule.wire_W = field.wire_S * volt2;
     for (std::size_t m = 0; m < tissue::kStrayMaterials; ++m) {
         tissue::StrayCurrent& stray = state.stray;
         stray.power_W[m] = state.stray_S[m] * volt2;

@@ -79,6 +79,9 @@ Group electric_group() {
         "arc_resistance_Ohm_per_mm", Unit{"Ohm/mm", 1e3, 0.0}, 0, 1e7,
         [](Scene & s) -> auto& { return s.electric.arc_resistance_Ohm_per_m; }, "and more with its length.");
     t.number(
+        "arc_wire_share", kNoUnit, 0, 1, [](Scene & s) -> auto& { return s.electric.arc_wire_share; },
+        "Share of an arc's heat that the wire takes.");
+    t.number(
         "arc_conductivity_S_per_m", named("S/m"), 0, 100,
         [](Scene & s) -> auto& { return s.electric.arc_conductivity_S_per_m; },
         "At least this, where arcs burn through tissue that has dried at the metal.");

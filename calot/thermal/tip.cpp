@@ -78,6 +78,9 @@ void exchange_with_tip(const tissue::Model& model, tissue::State& state, const t
         work.active.set((near.hexel - model.hexels.first) / kBlockCells);
         taken_J -= static_cast<double>(enthalpy - before) * volume;
     }
+    const double arcs_J = exchange.joule.wire_W * dt_s;
+    state.energy_J.delivered += arcs_J;
+    taken_J += arcs_J;
     const double lost_J = wire.loss_W_per_K * (tip.temperature_K - body_K) * dt_s;
     tip.heat_W = taken_J / dt_s;
     tip.lost_J += lost_J;

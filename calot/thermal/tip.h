@@ -1,9 +1,9 @@
 #pragma once
-// The bare wire of the hook as one lump of steel: tissue heats it, gas and the shaft cool it, and it goes on heating
+// The bare wire of the hook as one lump of steel: tissue and arcs heat it, gas and the shaft cool it, and it goes on heating
 // what it touches after the pedal is released. Residual heat is a known cause of injury: hooks exceed 100 C at every
 // length of activation (Matsuura 2021, doi 10.31083/j.ejgo.2021.01.2311).
 //
-//     C dT/dt = sum over touched hexels of h a (T_i - T)  -  h_gas A (T - T_0)  -  k A_wire / l (T - T_0)
+//     C dT/dt = P_arc + sum over touched hexels of h a (T_i - T)  -  h_gas A (T - T_0)  -  k A_wire / l (T - T_0)
 //
 //     1/h = 1/h_contact + char / k_char + s_h / 2k         contact, what sticks to the wire, half a hexel, in series
 //
@@ -23,7 +23,7 @@ struct BareWire {
 };
 BareWire bare_wire(const tissue::ThermalParameters& thermal, const std::vector<tissue::Capsule>& capsules);
 
-/// One heat step's exchange between the wire and the hexels that it touches. Adds the blocks that it heats to
+/// One heat step's exchange between the wire, arcs and the hexels that it touches. Adds the blocks that it heats to
 /// Work::active.
 void exchange_with_tip(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,
                        double dt_s);

@@ -66,7 +66,8 @@ struct JouleHeat {
     float scale = 1.0f;             ///< from the field of one volt to the present voltage: V^2
     double total_W = 0.0;           ///< sum of density * hexel volume
     double outflow_W = 0.0;         ///< dissipated outside the tissue's hexels, in held organs and beyond the window;
-                                    ///< the generator delivers total_W + outflow_W
+                                    ///< the generator delivers total_W + outflow_W + wire_W
+    double wire_W = 0.0;            ///< in the wire, by arcs
 
     /// Place in `density` of a hexel in the box.
     std::int64_t index(const Int3& hexel) const {

@@ -53,6 +53,7 @@ struct ElectricParameters {
     double arc_field_V_per_m = 2.6e6;     ///< and this much more per metre of gas between them
     double arc_resistance_Ohm = 1000.0;   ///< of one arc to one hexel
     double arc_resistance_Ohm_per_m = 1e6;
+    double arc_wire_share = 0.5;          ///< of an arc's heat (electric/contact.h)
     double arc_conductivity_S_per_m = 0.02;  ///< of a dried hexel that arcs burn through
     double char_density_kg_per_m3 = 400.0;
     double char_conductivity_S_per_m = 0.05;  ///< of what sticks to the wire

@@ -28,7 +28,7 @@ struct EnergyBudget {
     double surface = 0.0;    ///< to gas and held tissue by convection
     double perfusion = 0.0;  ///< to blood
     double debris = 0.0;     ///< left with crumbs that fell
-    double tip = 0.0;        ///< net, from tissue into the hook's bare wire
+    double tip = 0.0;        ///< net, from tissue and arcs into the hook's bare wire
     double transit = 0.0;    ///< under way between hexels of which one has still to take its part in the heat step;
                              ///< zero between heat steps
     // stored (sum of enthalpy) is computed when asked for; the imbalance is
@@ -40,7 +40,7 @@ struct EnergyBudget {
 struct TipState {
     double temperature_K = 310.15;  ///< of the wire
     double char_kg = 0.0;           ///< burnt tissue that sticks to it
-    double heat_W = 0.0;  ///< net, from tissue into the wire during the last heat step; negative: it heats tissue
+    double heat_W = 0.0;  ///< net, from tissue and arcs into the wire during the last heat step; negative: it heats tissue
     double lost_J = 0.0;  ///< since the start: from the wire to gas and up the shaft
 };
 
@@ -57,12 +57,15 @@ struct GeneratorState {
 /// The field about the tip for one volt on the metal, as last solved.
 struct FieldState {
     double tissue_S = 0.0;        ///< heat in hexels per V^2
-    double elsewhere_S = 0.0;     ///< in organs that hold tissue and beyond the window; both together are 1 / R
+    double elsewhere_S = 0.0;     ///< in organs that hold tissue and beyond the window
+    double wire_S = 0.0;          ///< in the wire, by arcs
     double residual = 0.0;        ///< |b - A phi| / |b| of the last solve
     double imbalance = 0.0;       ///< greatest |V I - heat - outflow| / V I of any solve so far
     std::int64_t solved = 0;      ///< 1: metal touches tissue and the field is that of this contact
     std::int64_t contacts = 0;    ///< hexels that metal touches
     std::int64_t arcs = 0;        ///< hexels that arcs strike
+
+    double conductance_S() const { return tissue_S + elsewhere_S + wire_S; }  ///< 1 / R
 };
 
 /// Where current went that was not meant for it: by material, the first kStrayMaterials of Model::materials.

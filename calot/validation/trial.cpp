@@ -67,6 +67,7 @@ void measure(const simulation::Simulation& run, Path& path, Trial& trial) {
     double top_m = -1e9;
     for (std::int64_t h = model.hexels.first; h < model.hexels.last; ++h)
         if (model.hexel_initial.test(h)) top_m = std::max(top_m, model.hexels.centre_m(h).z);
+    std::vector<double> section_m(static_cast<std::size_t>(model.hexels.size.x), 0.0);
     for (std::int64_t h = model.hexels.first; h < model.hexels.last; ++h) {
         if (!model.hexel_initial.test(h)) continue;
         const Int3 c = model.hexels.coordinates(h);
@@ -76,10 +77,40 @@ void measure(const simulation::Simulation& run, Path& path, Trial& trial) {
         } else if (state.damage[static_cast<std::size_t>(h)] >= 1.0f) {
             trial.damaged_mm3 += cell_mm3;
             // Hexels count with their far side.
-            trial.damage_mm = std::max(trial.damage_mm, (path.at(c.x, c.y) + 0.5 * s) * 1e3);
+            const double reach_m = path.at(c.x, c.y) + 0.5 * s;
+            trial.damage_mm = std::max(trial.damage_mm, reach_m * 1e3);
+            section_m[static_cast<std::size_t>(c.x)] = std::max(section_m[static_cast<std::size_t>(c.x)], reach_m);
         }
     }
+    double sections = 0.0;
+    for (int x = 0; x < model.hexels.size.x; ++x) {
+        double nearest = 1.0;
+        for (int y = 0; y < model.hexels.size.y; ++y) nearest = std::min(nearest, path.at(x, y));
+        if (nearest > 0.0) continue;
+        trial.section_damage_mm += section_m[static_cast<std::size_t>(x)] * 1e3;
+        sections += 1.0;
+    }
+    trial.section_damage_mm /= std::max(sections, 1.0);
 }
+
+/// A hand that lets the instrument rest on tissue.
+class RestingHand {
+  public:
+    explicit RestingHand(double force_N) : force_N_(force_N) {}
+    void move(const simulation::Simulation& run, tissue::Input& input) {
+        constexpr double kCompliance_m_per_Ns = 0.02, kFastest_m_per_s = 0.02;
+        if (force_N_ > 0.0 && input.pedal) {
+            const double missing_N = force_N_ - run.state().hook_force_N.z;
+            lowered_m_ += run.model().tick_s *
+                          std::clamp(kCompliance_m_per_Ns * missing_N, -kFastest_m_per_s, kFastest_m_per_s);
+        }
+        input.hook.position_m.z -= lowered_m_;
+    }
+
+  private:
+    double force_N_;
+    double lowered_m_ = 0.0;
+};
 
 }  // namespace
 
@@ -119,10 +150,12 @@ Trial perform(const Options& options, const TrialPlan& plan) {
     Trial trial;
     trial.scene = plan.scene;
     Path path(run.model());
+    RestingHand hand(plan.rests_with_N);
     const double until = plan.until_s > 0.0 ? plan.until_s : setup->duration_s;
     const auto ticks = static_cast<std::int64_t>(std::llround(until / run.model().tick_s));
     for (std::int64_t tick = 0; tick < ticks; ++tick) {
-        const tissue::Input input = setup->script.at(run.time_s());
+        tissue::Input input = setup->script.at(run.time_s());
+        hand.move(run, input);
         if (!run.tick(input)) {
             trial.stopped = true;
             break;

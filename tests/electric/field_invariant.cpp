@@ -47,7 +47,7 @@ TEST(FieldInvariant, PowerInIsHeatPlusOutflow) {
         const tissue::GeneratorState& generator = rig.state.generator;
         ASSERT_GT(generator.power_W, 0.0);
         const double by_current = rig.work->electrode_conductance_S * generator.voltage_V * generator.voltage_V;
-        const double out = rig.exchange.joule.total_W + rig.exchange.joule.outflow_W;
+        const double out = rig.exchange.joule.total_W + rig.exchange.joule.outflow_W + rig.exchange.joule.wire_W;
         EXPECT_NEAR(by_current / out, 1.0, 5e-4);
         EXPECT_NEAR(generator.voltage_V * generator.current_A / out, 1.0, 1e-9);
         EXPECT_NEAR(generator.power_W / out, 1.0, 1e-9);

@@ -1,38 +1,10 @@
-// Conduction and surroundings against closed forms.
+// Conduction and surroundings against closed forms; more of them: calot/validation/heat.cpp.
 
 #include <gtest/gtest.h>
 
 #include "calot/validation/heat_rig.h"
 
 namespace calot::thermal {
-
-namespace {
-
-constexpr double kDiffusivity = 0.5 / 4e6;  // of plain_material
-
-}  // namespace
-
-TEST(Conduction, HeatedHalfSpaceFollowsErfc) {
-    // Two half-spaces of 40 and 0 K rise meet: the face between stays at 20 K by symmetry, so that each side is a
-    // half-space whose surface is held, T = 20 erfc(x / sqrt(4 a t)) (Carslaw & Jaeger 1959, 2.4).
-    const int n = 200;
-    const double s = 0.1e-3, dt = 0.25 * s * s / kDiffusivity;
-    tissue::Model model = bar_model(n, s, dt, {plain_material()});
-    insulate(model);
-    HeatRun run(std::move(model));
-    for (int k = 0; k < n / 2; ++k) run.heat(bar_cell(run.model, k), run.model.thermal.body_temperature_K + 40.0);
-    run.start();
-    const int steps = 800;
-    run.run(steps);
-    double worst = 0.0;
-    for (int k = n / 2; k < n; ++k) {
-        const double x = (k - n / 2 + 0.5) * s;
-        const double exact = 20.0 * std::erfc(x / std::sqrt(4.0 * kDiffusivity * steps * dt));
-        worst = std::max(worst, std::abs(run.rise_K(bar_cell(run.model, k)) - exact));
-    }
-    // Diffusion length 2 sqrt(a t) = 28 cells: second-order error about (1/28)^2 / 10 of 20 K.
-    EXPECT_LT(worst, 5e-3);
-}
 
 TEST(Conduction, PerfusedTissueDecaysExponentially) {
     // Pennes: k T'' = w (T - T_a), flux q at one end: T - T_a = q / (k m) exp(-m x), m = sqrt(w / k).

@@ -129,35 +129,6 @@ double stefan_lambda(double stefan) {
     return low;
 }
 
-/// Relative error of the depth to which water at 100 C has boiled off, when one end is held at 400 C.
-double boil_off_front_error(int n) {
-    tissue::Material m = liver();
-    m.removal_temperature_K = 2000.0;
-    const double length = 4e-3, s = length / n, hot = 673.15;
-    const double water = m.density_kg_per_m3 * m.water_mass_fraction;
-    const double dry = m.density_kg_per_m3 * (1.0 - m.water_mass_fraction) * m.dry_specific_heat_J_per_kgK;
-    const double a = m.thermal_conductivity_W_per_mK / dry;
-    tissue::Model model = bar_model(n, s, 0.08 * s * s / a, {m});
-    model.hexel_held.set(model.hexels.index(n + 1, 1, 1));  // only the hot end faces gas
-    model.thermal.held_transfer_W_per_m2K = 0.0;
-    model.thermal.gas_transfer_W_per_m2K = 1e9;
-    model.thermal.gas_temperature_K = hot;
-    HeatRun run(std::move(model));
-    for (int k = 0; k < n; ++k) run.heat(bar_cell(run.model, k), 373.15);
-    run.start();
-    const double lambda = stefan_lambda(dry * (hot - 373.15) / (water * 2.26e6));
-    const double until = std::pow(0.5 * length / (2.0 * lambda), 2.0) / a;  // the front is half way then
-    run.run(static_cast<int>(std::lround(until / run.model.tick_s)));
-    const double t = static_cast<double>(run.state.tick) * run.model.tick_s;
-    double front = 0.0;
-    for (int k = 0; k < n; ++k) {
-        const auto left =
-            static_cast<double>(run.state.water_kg_per_m3[static_cast<std::size_t>(bar_cell(run.model, k))]);
-        front += s * (1.0 - left / water);
-    }
-    return std::abs(front / (2.0 * lambda * std::sqrt(a * t)) - 1.0);
-}
-
 /// Relative error of the depth to which tissue on the threshold's plateau has given its latent heat back, when one end
 /// is held at body temperature.
 double threshold_front_error(int n) {
@@ -194,13 +165,6 @@ double threshold_front_error(int n) {
 
 // The front moves cell by cell, and how far it has come within a cell is known only while that cell boils: errors are
 // of first order in s_h at least.
-TEST(Stefan, BoilOffFrontFollowsTheSimilaritySolution) {
-    const double coarse = boil_off_front_error(20), fine = boil_off_front_error(80);
-    EXPECT_LT(coarse, 2e-3);
-    EXPECT_LT(fine, 5e-4);
-    EXPECT_LT(fine, 0.5 * coarse);
-}
-
 TEST(Stefan, ThresholdFrontFollowsTheSimilaritySolution) {
     const double coarse = threshold_front_error(20), fine = threshold_front_error(80);
     EXPECT_LT(coarse, 2e-3);
