@@ -36,11 +36,13 @@ void take_checkpoint(const CheckpointReader& checkpoints, std::int64_t tick, Mom
     const std::int64_t at = checkpoints.last_before(tick);
     if (at <= 0) return;
     tissue::State state = moment.run->state();
-    std::string observer;
-    checkpoints.read(at, state, observer);
+    Aside aside;
+    checkpoints.read(at, state, aside);
     moment.run = std::make_unique<simulation::Simulation>(moment.setup, std::move(state));
     try {
-        moment.meter->restore(observer, std::span(moment.recording->inputs).first(static_cast<std::size_t>(at)));
+        Archive effects(std::move(aside.effects));
+        moment.run->archive_effects(effects);
+        moment.meter->restore(aside.measured, std::span(moment.recording->inputs).first(static_cast<std::size_t>(at)));
     } catch (const std::runtime_error&) {
         // Measured for another task: measure from the start instead.
         moment.run = std::make_unique<simulation::Simulation>(moment.setup);
@@ -146,7 +148,11 @@ void LiveSession::after_tick(const simulation::Simulation& run, const tissue::In
             figures_.ended = watch_->ended();
         }
     }
-    recorder_->after_tick(run, input, [this] { return meter_->save(); });
+    recorder_->after_tick(run, input, [this, &run] {
+        Archive effects;
+        const_cast<simulation::Simulation&>(run).archive_effects(effects);  // writing changes nothing
+        return Aside{meter_->save(), effects.bytes()};
+    });
 }
 
 SessionRow LiveSession::finish(const simulation::Simulation& run) {

@@ -105,9 +105,9 @@ void GlfwWindow::toggle_fullscreen() {
 void GlfwWindow::capture_mouse(bool capture) {
     if (capture == captured_) return;
     captured_ = capture;
-    fresh_cursor_ = true;
     moved_x_ = moved_y_ = wheel_ = 0.0;
     glfwSetInputMode(window_, GLFW_CURSOR, capture ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    glfwGetCursorPos(window_, &cursor_x_, &cursor_y_);  // movement starts from here
 }
 
 std::string GlfwWindow::renderer() const {
@@ -116,7 +116,7 @@ std::string GlfwWindow::renderer() const {
 }
 
 void GlfwWindow::on_key(int key, int action) {
-    if (action != GLFW_PRESS) return;
+    if (action != GLFW_PRESS || (typing_ && key < GLFW_KEY_ESCAPE)) return;
     static constexpr std::pair<int, Command> kCommands[] = {
         {GLFW_KEY_ESCAPE, Command::pause},   {GLFW_KEY_P, Command::pause},   {GLFW_KEY_F1, Command::help},
         {GLFW_KEY_H, Command::help},         {GLFW_KEY_F2, Command::pace},   {GLFW_KEY_F5, Command::reset},
@@ -129,10 +129,8 @@ void GlfwWindow::on_key(int key, int action) {
 }
 
 void GlfwWindow::on_cursor(double x, double y) {
-    if (!std::exchange(fresh_cursor_, false)) {
-        moved_x_ += x - cursor_x_;
-        moved_y_ += y - cursor_y_;
-    }
+    moved_x_ += x - cursor_x_;
+    moved_y_ += y - cursor_y_;
     cursor_x_ = x;
     cursor_y_ = y;
 }
