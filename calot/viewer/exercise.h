@@ -95,7 +95,8 @@ const std::vector<Patient>& patients_of(const Exercise& exercise);
 /// A session that was cut off, found at the start.
 struct CutOff {
     std::string exercise;  ///< id
-    std::string title;     ///< for people
+    std::string title;     ///< of the exercise, a key or plain text
+    std::string started_utc;
     Past past;
     std::function<void()> close;  ///< enters what it was worth
 };

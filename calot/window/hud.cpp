@@ -80,6 +80,20 @@ void draw_exercise(const Gui& gui, const Language& text, const HudContent& conte
     ImGui::End();
 }
 
+/// What the hand on a device feels.
+void draw_haptics(const Language& text, const HapticsFigures& haptics) {
+    if (haptics.device.empty()) return;
+    const ImVec4& tint = haptics.trouble.empty() ? colour::kText : colour::kBad;
+    name_and_value(text("haptics.device"), haptics.device, tint);
+    if (!haptics.trouble.empty()) {
+        wrapped(haptics.trouble, colour::kBad);
+        return;
+    }
+    name_and_value(text("haptics.rate"), fmt::format("{:.0f} /s", haptics.steps_per_s),
+                   haptics.steps_per_s < 900.0 ? colour::kBad : colour::kGood);
+    name_and_value(text("haptics.force"), fmt::format("{:.2f} N", haptics.force_N));
+}
+
 void draw_pace(const Gui& gui, const Language& text, const HudContent& content) {
     const float u = gui.unit();
     const viewer::Pace& pace = content.snapshot.pace;
@@ -146,20 +160,6 @@ void draw_help_group(float u, const Language& text, const HelpGroup& group) {
         ImGui::PopTextWrapPos();
     }
     ImGui::Dummy(ImVec2(1.0f, 6.0f * u));
-}
-
-/// What the hand on a device feels.
-void draw_haptics(const Language& text, const HapticsFigures& haptics) {
-    if (haptics.device.empty()) return;
-    const ImVec4& tint = haptics.trouble.empty() ? colour::kText : colour::kBad;
-    name_and_value(text("haptics.device"), haptics.device, tint);
-    if (!haptics.trouble.empty()) {
-        wrapped(haptics.trouble, colour::kBad);
-        return;
-    }
-    name_and_value(text("haptics.rate"), fmt::format("{:.0f} /s", haptics.steps_per_s),
-                   haptics.steps_per_s < 900.0 ? colour::kBad : colour::kGood);
-    name_and_value(text("haptics.force"), fmt::format("{:.2f} N", haptics.force_N));
 }
 
 /// Seconds until hands move again, large, in the middle.

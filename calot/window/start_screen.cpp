@@ -47,7 +47,7 @@ bool patient_button(const Gui& gui, const Language& text, const viewer::Patient&
                   ImVec2(right - 64.0f * u - size.x, middle - 0.5f * size.y), ImGui::GetColorU32(colour::kFaint),
                   word.c_str());
     for (int dot = 0; dot < 3; ++dot) {
-        const ImVec2 centre(right - (2 - dot) * 20.0f * u - 6.0f * u, middle);
+        const ImVec2 centre(right - static_cast<float>(2 - dot) * 20.0f * u - 6.0f * u, middle);
         if (dot < patient.difficulty)
             list->AddCircleFilled(centre, 6.0f * u, ImGui::GetColorU32(colour::kAccent));
         else
@@ -145,6 +145,7 @@ CutOffChoice draw_cut_off(const Gui& gui, const Language& text, const viewer::Cu
     if (begin_panel("cut off", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(560.0f * gui.unit(), 0.0f), 0.94f)) {
         heading(gui, text("cut_off.title"));
         wrapped(text(cut_off.title));
+        if (!cut_off.started_utc.empty()) name_and_value(text("cut_off.started"), cut_off.started_utc);
         wrapped(text("cut_off.about"), colour::kFaint);
         ImGui::Dummy(ImVec2(1.0f, 8.0f * gui.unit()));
         if (main_button(gui, text("cut_off.look"), ImVec2(-1.0f, 52.0f * gui.unit()))) choice = CutOffChoice::look;

@@ -105,7 +105,7 @@ class Trainer {
     bool resumed_ = false;        ///< the session being loaded goes on from a moment
     double hands_free_s_ = 0.0;   ///< when the hands move again after a rewind
 
-    double now_s_ = steady_s(), last_s_ = now_s_, drawn_s_ = 0.0;
+    double now_s_ = viewer::steady_s(), last_s_ = now_s_, drawn_s_ = 0.0;
     viewer::RateMeter picture_rate_;
     double latency_s_ = 0.0;
     std::int64_t answered_ = 0;
