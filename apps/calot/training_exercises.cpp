@@ -176,7 +176,9 @@ viewer::Debrief TrainingAttempt::debrief() {
     if (live_->result()) {
         const training::Score& score = live_->result()->score;
         debrief.lines.push_back({"debrief.points", fmt::format("{:.0f} / 100", score.points),
-                                 score.broken.empty() ? Mood::good : Mood::bad});
+                                 !score.broken.empty() ? Mood::bad
+                                 : score.completed    ? Mood::good
+                                                      : Mood::plain});
         for (const training::BrokenLimit& limit : score.broken)
             debrief.lines.push_back({limit.message, fmt::format("\u2264 {:.0f}", limit.cap), Mood::bad});
         for (const training::ScorePart& part : score.parts)

@@ -95,10 +95,10 @@ Moment reach(Store& store, std::int64_t session, std::int64_t tick, std::shared_
     return moment;
 }
 
-void LiveSession::enter(const SessionStart& start, const simulation::Simulation& run) {
+void LiveSession::enter(const SessionStart& start, const simulation::Setup& setup) {
     row_.trainee = start.trainee;
-    row_.scene = run.setup().name;
-    row_.seed = run.setup().seed;
+    row_.scene = setup.name;
+    row_.seed = setup.seed;
     row_.task = start.task ? start.task->name : "";
     row_.program_version = start.program_version;
     task_ = start.task;
@@ -113,7 +113,7 @@ void LiveSession::enter(const SessionStart& start, const simulation::Simulation&
 LiveSession::LiveSession(Store& store, const SessionStart& start, const simulation::Simulation& run)
     : store_(store),
       meter_(std::make_unique<Meter>(run, targets_of(start.task ? &*start.task : nullptr, run.setup()))) {
-    enter(start, run);
+    enter(start, run.setup());
     recorder_ = std::make_unique<Recorder>(folder(), start.program_version, run.setup().scene_text, run.state(),
                                            Recorder::Prefix{});
 }
@@ -122,7 +122,7 @@ LiveSession::LiveSession(Store& store, const SessionStart& start, Moment& from)
     : store_(store), meter_(std::move(from.meter)) {
     row_.parent = from.session;
     row_.parent_tick = from.tick;
-    enter(start, *from.run);
+    enter(start, *from.setup);
     const simulation::Simulation fresh(from.setup);  // its state is the one that checkpoints are told against
     recorder_ = std::make_unique<Recorder>(folder(), start.program_version, from.setup->scene_text, fresh.state(),
                                            Recorder::Prefix{from.recording.get(), from.checkpoints, from.tick});

@@ -25,6 +25,12 @@ enum class Command {
     preset2,
     preset3,
     preset4,
+    play,     ///< these six on a timeline
+    earlier,  ///< again and again while it is held
+    later,
+    first,
+    last,
+    enter,
     count
 };
 

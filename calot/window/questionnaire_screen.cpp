@@ -25,7 +25,7 @@ void draw_scale(const Gui& gui, const Language& text, const viewer::Questionnair
 /// One statement with its answers; a second press takes an answer back.
 void draw_statement(const Gui& gui, const std::string& statement, std::size_t scale, float at, float column,
                     std::optional<int>& answer) {
-    const float u = gui.unit(), top = ImGui::GetCursorPosY(), height = 38.0f * u;
+    const float u = gui.unit(), top = ImGui::GetCursorPosY(), height = 34.0f * u;
     ImGui::PushTextWrapPos(at - 12.0f * u);
     const float lines = ImGui::CalcTextSize(statement.c_str(), nullptr, false, at - 12.0f * u).y;
     ImGui::SetCursorPosY(top + std::max(0.0f, 0.5f * (height - lines)));

@@ -15,7 +15,7 @@ using viewer::Mark;
 namespace {
 
 constexpr float kMargin = 16.0f;
-constexpr double kStep_s = 5.0, kKeyStep_s = 1.0;
+constexpr double kStep_s = 5.0;
 
 const ImVec4& colour_of(Mark::Kind kind) {
     static const ImVec4 touch{0.55f, 0.72f, 0.95f, 1.0f};
@@ -101,15 +101,6 @@ void draw_moments(const Gui& gui, const Language& text, const RewindContent& con
     ImGui::End();
 }
 
-void obey_keys(const RewindContent& content, RewindState& state, RewindChoice& choice) {
-    if (ImGui::IsKeyPressed(ImGuiKey_LeftArrow)) state.at_s -= kKeyStep_s, state.playing = false;
-    if (ImGui::IsKeyPressed(ImGuiKey_RightArrow)) state.at_s += kKeyStep_s, state.playing = false;
-    if (ImGui::IsKeyPressed(ImGuiKey_Home, false)) state.at_s = 0.0, state.playing = false;
-    if (ImGui::IsKeyPressed(ImGuiKey_End, false)) state.at_s = content.duration_s, state.playing = false;
-    if (ImGui::IsKeyPressed(ImGuiKey_Space, false)) state.playing = !state.playing;
-    if (ImGui::IsKeyPressed(ImGuiKey_Enter, false)) choice = RewindChoice::take_over;
-}
-
 }  // namespace
 
 std::string describe(const Language& text, const Mark& mark) {
@@ -155,7 +146,6 @@ RewindChoice draw_rewind(const Gui& gui, const Language& text, const RewindConte
     }
     ImGui::End();
     draw_moments(gui, text, content, state, height);
-    obey_keys(content, state, choice);
     if (state.playing && state.at_s >= content.duration_s) state.playing = false;
     state.at_s = std::clamp(state.at_s, 0.0, content.duration_s);
     return choice;

@@ -154,22 +154,37 @@ bool draw_settings(const Gui& gui, const Language& text, const std::vector<std::
 
 DebriefChoice draw_debrief(const Gui& gui, const Language& text, const viewer::Debrief& debrief) {
     DebriefChoice choice = DebriefChoice::none;
-    if (begin_panel("debrief", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(620.0f * gui.unit(), 0.0f), 0.92f)) {
+    const float u = gui.unit(), row = 52.0f * u, spacing = ImGui::GetStyle().ItemSpacing.y;
+    const bool rewind = !debrief.past.recording.empty();
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float width = std::min(640.0f * u, screen.x - 24.0f * u);
+    if (begin_panel("debrief", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(width, 0.0f), 0.92f)) {
         heading(gui, text(debrief.title.empty() ? "debrief.title" : debrief.title));
-        for (const viewer::HudLine& line : debrief.lines)
-            name_and_value(text(line.name), text(line.value),
-                           line.mood == viewer::HudLine::Mood::good  ? colour::kGood
-                           : line.mood == viewer::HudLine::Mood::bad ? colour::kBad
-                                                                     : colour::kText);
-        ImGui::Dummy(ImVec2(1.0f, 8.0f * gui.unit()));
-        if (!debrief.past.recording.empty() &&
-            main_button(gui, text("debrief.rewind"), ImVec2(-1.0f, 52.0f * gui.unit())))
-            choice = DebriefChoice::rewind;
-        if (!debrief.questionnaire.statements.empty() && wide_button(gui, text("debrief.questions")))
-            choice = DebriefChoice::questions;
-        if (!debrief.report.empty() && wide_button(gui, text("debrief.report"))) choice = DebriefChoice::report;
-        if (wide_button(gui, text("debrief.again"))) choice = DebriefChoice::again;
-        if (wide_button(gui, text("debrief.menu"))) choice = DebriefChoice::menu;
+        const float line = ImGui::GetTextLineHeightWithSpacing();
+        const float below = (rewind ? 3.0f : 2.0f) * (row + spacing) + ImGui::GetCursorPosY() + 60.0f * u;
+        const float lines = std::min(line * static_cast<float>(debrief.lines.size()) + 4.0f * u, screen.y - below);
+        if (!debrief.lines.empty()) {
+            ImGui::BeginChild("lines", ImVec2(0.0f, std::max(3.0f * line, lines)));
+            for (const viewer::HudLine& each : debrief.lines)
+                name_and_value(text(each.name), text(each.value),
+                               each.mood == viewer::HudLine::Mood::good  ? colour::kGood
+                               : each.mood == viewer::HudLine::Mood::bad ? colour::kBad
+                                                                         : colour::kText);
+            ImGui::EndChild();
+        }
+        ImGui::Dummy(ImVec2(1.0f, 4.0f * u));
+        if (rewind && main_button(gui, text("debrief.rewind"), ImVec2(-1.0f, row))) choice = DebriefChoice::rewind;
+        const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+        int placed = 0;
+        const auto button = [&](bool there, const char* key, DebriefChoice what) {
+            if (!there) return;
+            if (placed++ % 2 == 1) ImGui::SameLine();
+            if (ImGui::Button(text(key).c_str(), ImVec2(half, row))) choice = what;
+        };
+        button(!debrief.questionnaire.statements.empty(), "debrief.questions", DebriefChoice::questions);
+        button(!debrief.report.empty(), "debrief.report", DebriefChoice::report);
+        button(true, "debrief.again", DebriefChoice::again);
+        button(true, "debrief.menu", DebriefChoice::menu);
     }
     ImGui::End();
     return choice;

@@ -145,7 +145,9 @@ CutOffChoice draw_cut_off(const Gui& gui, const Language& text, const viewer::Cu
     if (begin_panel("cut off", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(560.0f * gui.unit(), 0.0f), 0.94f)) {
         heading(gui, text("cut_off.title"));
         wrapped(text(cut_off.title));
-        if (!cut_off.started_utc.empty()) name_and_value(text("cut_off.started"), cut_off.started_utc);
+        if (cut_off.started_utc.size() >= 16)  // 2026-01-31T14:05:00Z
+            name_and_value(text("cut_off.started"),
+                           cut_off.started_utc.substr(0, 10) + "  " + cut_off.started_utc.substr(11, 5));
         wrapped(text("cut_off.about"), colour::kFaint);
         ImGui::Dummy(ImVec2(1.0f, 8.0f * gui.unit()));
         if (main_button(gui, text("cut_off.look"), ImVec2(-1.0f, 52.0f * gui.unit()))) choice = CutOffChoice::look;

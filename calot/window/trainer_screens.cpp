@@ -16,9 +16,10 @@ namespace calot::window {
 namespace {
 
 constexpr double kFullSizzle_kg_per_s = 2.0e-5;
+constexpr double kKeyStep_s = 1.0;
 constexpr double kBackFromPause_s = 5.0;  ///< where the timeline stands at first after a pause
 // The mouse as the hand on the laparoscope, while nothing is held.
-constexpr double kTurnPerHeight_rad = 0.9, kLensPerHeight_rad = 3.0, kDeeperPerNotch_m = 4e-3;
+constexpr double kTurnPerHeight_rad = 0.35, kLensPerHeight_rad = 3.0, kDeeperPerNotch_m = 4e-3;
 
 }  // namespace
 
@@ -111,7 +112,21 @@ void Trainer::draw_rewind_screen() {
                        {static_cast<double>(replay_->ticks()) * tick_s, static_cast<double>(replay_->shown()) * tick_s,
                         replay_->pedal(), past_.marks},
                        rewind_));
-    if (screen_ == Screen::rewind) look_about();
+    if (screen_ != Screen::rewind) return;
+    look_about();
+    obey_timeline_keys();
+}
+
+void Trainer::obey_timeline_keys() {
+    const double before_s = rewind_.at_s, end_s = static_cast<double>(replay_->ticks()) * setup_->model.tick_s;
+    if (window_.take(Command::earlier)) rewind_.at_s -= kKeyStep_s;
+    if (window_.take(Command::later)) rewind_.at_s += kKeyStep_s;
+    if (window_.take(Command::first)) rewind_.at_s = 0.0;
+    if (window_.take(Command::last)) rewind_.at_s = end_s;
+    rewind_.at_s = std::clamp(rewind_.at_s, 0.0, end_s);
+    if (rewind_.at_s != before_s) rewind_.playing = false;
+    if (window_.take(Command::play)) rewind_.playing = !rewind_.playing;
+    if (window_.take(Command::enter)) take_over();
 }
 
 /// The mouse turns the laparoscope where no panel is under it.

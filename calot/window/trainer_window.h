@@ -50,6 +50,7 @@ class Trainer {
     void draw_rewind_screen();
     void draw_questions();
     void look_about();
+    void obey_timeline_keys();
     void handle(PauseChoice choice);
     void handle(DebriefChoice choice);
     void handle(RewindChoice choice);
