@@ -66,6 +66,7 @@ int materials(const MaterialsOptions& options);
 struct ReplayOptions {
     std::string recording;
     bool verify = false;
+    double from_s = 0.0;  ///< begin there, from the checkpoint before
     OutputChoice output;
 };
 int replay(const ReplayOptions& options);

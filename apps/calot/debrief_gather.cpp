@@ -98,9 +98,11 @@ class Gathering {
             for (std::int64_t tick : thin(checkpoints.ticks(), frames_)) {
                 if (tick >= ticks_) break;
                 tissue::State state = initial;
-                std::string observer;
-                checkpoints.read(tick, state, observer);
+                training::Aside aside;
+                checkpoints.read(tick, state, aside);
                 simulation::Simulation run(content_.setup, std::move(state));
+                Archive effects(std::move(aside.effects));
+                run.archive_effects(effects);
                 run.tick(input(tick));
                 draw(run, tick);
                 progress_->update(run.time_s());

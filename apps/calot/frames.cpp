@@ -45,14 +45,15 @@ Frames::~Frames() {
 
 double Frames::still_time_s(int k) const {
     const int last = settings_.picture.stills - 1;
-    return last > 0 ? settings_.duration_s * k / last : 0.0;
+    return last > 0 ? settings_.start_s + (settings_.duration_s - settings_.start_s) * k / last : settings_.start_s;
 }
 bool Frames::still_due(double time_s) const {
     return next_still_ < settings_.picture.stills && time_s >= still_time_s(next_still_) - kHalfTick_s;
 }
 bool Frames::frame_due(double time_s) const {
     return want_video_ &&
-           time_s >= static_cast<double>(next_frame_) / settings_.picture.frames_per_second - kHalfTick_s;
+           time_s >=
+               settings_.start_s + static_cast<double>(next_frame_) / settings_.picture.frames_per_second - kHalfTick_s;
 }
 bool Frames::due(double time_s) const {
     return thread_.joinable() && (still_due(time_s) || frame_due(time_s));

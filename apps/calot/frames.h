@@ -24,7 +24,7 @@ struct Still {
 struct FrameSettings {
     FrameKind kind = FrameKind::none;
     scene::Picture picture;
-    double duration_s = 0.0;
+    double start_s = 0.0, duration_s = 0.0;  ///< from, up to
     std::string directory;  ///< output directory (the temporary one)
 };
 

@@ -243,6 +243,10 @@ int run(int argc, char** argv) {
     replay_command->add_option("recording", replay_options.recording, "recording.calot of a run")
         ->required()
         ->type_name("RECORDING");
+    replay_command
+        ->add_option("--from", replay_options.from_s, "Begin at this moment, from the checkpoint before it if there is one")
+        ->type_name("SECONDS")
+        ->check(CLI::NonNegativeNumber);
     replay_command->add_flag("--verify", replay_options.verify,
                              "Compare the state with the recording every second; exit code 1 at the first difference");
     add_output_options(*replay_command, replay_options.output);

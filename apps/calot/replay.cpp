@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -5,6 +6,7 @@
 
 #include "calot/base/error.h"
 #include "calot/simulation/recording.h"
+#include "calot/training/session.h"
 #include "commands.h"
 #include "run.h"
 
@@ -61,6 +63,9 @@ int replay(const ReplayOptions& options) {
     if (recording.inputs.empty())
         throw InputError(options.recording, 0, 0, "the recording holds no inputs",
                          "it was cut off within its first second");
+    if (options.from_s * 1e3 >= static_cast<double>(recording.inputs.size()))
+        throw InputError(options.recording, 0, 0, fmt::format("the recording has nothing after {} s", options.from_s),
+                         fmt::format("it ends at {:.3f} s", static_cast<double>(recording.inputs.size()) * 1e-3));
     if (!recording.complete)
         fmt::print(stderr, "calot: note: the recording was cut off; it is replayed up to tick {}\n",
                    recording.inputs.size());
@@ -70,6 +75,15 @@ int replay(const ReplayOptions& options) {
     plan.setup = std::make_shared<simulation::Setup>(build_setup(plan.scene));
     plan.output = options.output;
     plan.ticks = static_cast<std::int64_t>(recording.inputs.size());
+    training::Moment moment;
+    if (options.from_s > 0.0) {
+        plan.before = &recording;
+        plan.reach = [&] {
+            moment = training::reach(options.recording, std::llround(options.from_s / plan.setup->model.tick_s), nullptr,
+                                     plan.setup);
+            return std::move(moment.run);
+        };
+    }
     plan.input = [&recording](std::int64_t tick, double) { return recording.inputs[static_cast<std::size_t>(tick)]; };
     std::optional<Verifier> verifier;
     if (options.verify) {

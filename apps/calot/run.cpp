@@ -9,7 +9,6 @@
 
 #include "calot/base/parallel.h"
 #include "calot/base/units.h"
-#include "calot/simulation/recording.h"
 #include "calot/viewer/picture.h"
 #include "interrupt.h"
 #include "output_directory.h"
@@ -38,7 +37,8 @@ class Outputs {
         : directory_(plan.output.directory, plan.output.force),
           recording_(directory_.path("recording.calot"), CALOT_VERSION, run.setup().scene_text, run.state()),
           series_(directory_.partial().string(), plan.output.export_every_s),
-          frames_({plan.output.frames, plan.scene.picture, duration_s, directory_.partial().string()}) {
+          frames_({plan.output.frames, plan.scene.picture, run.time_s(), duration_s, directory_.partial().string()}) {
+        if (plan.before != nullptr) recording_.adopt(*plan.before, run.state().tick);
         if (plan.output.frames != FrameKind::none) picture_.emplace(run.setup());
     }
 
@@ -113,7 +113,9 @@ RunRecord perform(const RunPlan& plan) {
     record.scene = plan.setup->name;
     record.seed = plan.setup->seed;
 
-    simulation::Simulation run(plan.setup);
+    const std::unique_ptr<simulation::Simulation> begun =
+        plan.reach ? plan.reach() : std::make_unique<simulation::Simulation>(plan.setup);
+    simulation::Simulation& run = *begun;
     const double duration_s = static_cast<double>(plan.ticks) * run.model().tick_s;
     record.phyxels_initial = run.state().phyxel_present.count();
     record.hexels_initial = run.state().hexel_present.count();
@@ -126,8 +128,8 @@ RunRecord perform(const RunPlan& plan) {
         record.conductors = conductors(run.model());
         Timeline timeline(outputs ? outputs->directory().path("timeline.csv") : "", record.conductors);
         Progress progress(plan.output.progress, duration_s);
-        tissue::Input input = plan.input(0, 0.0);
-        for (std::int64_t tick = 0; tick < plan.ticks && !record.interrupted && !record.stopped_by_observer; ++tick) {
+        tissue::Input input = plan.input(run.state().tick, run.time_s());
+        for (std::int64_t tick = run.state().tick; tick < plan.ticks && !record.interrupted && !record.stopped_by_observer; ++tick) {
             input = plan.input(tick, run.time_s());
             if (outputs) outputs->look(run, input);
             if (tick % kTicksPerRow == 0) timeline.add(make_row(run, input));

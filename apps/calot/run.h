@@ -9,6 +9,7 @@
 
 #include "calot/scene/scene.h"
 #include "calot/simulation/activations.h"
+#include "calot/simulation/recording.h"
 #include "calot/simulation/simulation.h"
 #include "calot/training/result.h"
 #include "commands.h"
@@ -24,8 +25,11 @@ struct RunRecord;
 struct RunPlan {
     scene::Scene scene;
     std::shared_ptr<const simulation::Setup> setup;
-    std::int64_t ticks = 0;
+    std::int64_t ticks = 0;  ///< of the end
     std::function<tissue::Input(std::int64_t tick, double time_s)> input;
+    /// Where the run begins, if not at the start, and the recording of what came before. Called once.
+    std::function<std::unique_ptr<simulation::Simulation>()> reach;
+    const simulation::Recording* before = nullptr;
     /// Before the first tick.
     std::function<void(const simulation::Simulation& run)> begin;
     /// After every tick; false ends the run.

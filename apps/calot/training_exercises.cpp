@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include "calot/base/error.h"
+#include "calot/training/questionnaire.h"
+#include "calot/training/session.h"
 #include "scored.h"
 
 extern char** environ;
@@ -31,12 +33,63 @@ void write_debrief_beside(const training::Store& store, std::int64_t session) {
     posix_spawn_file_actions_destroy(&actions);
 }
 
+/// What is worth coming back to, from what happened.
+std::vector<viewer::Mark> marks_of(const std::vector<training::Event>& events) {
+    using Kind = viewer::Mark::Kind;
+    std::vector<viewer::Mark> marks;
+    const auto add = [&](const training::Event& event, Kind kind, const char* text, const std::string& subject) {
+        marks.push_back({kind, event.time_s, text, subject});
+    };
+    for (const training::Event& event : events) {
+        const std::string structure = "structure." + event.structure;
+        switch (event.kind) {
+            case training::EventKind::activation_start:
+            case training::EventKind::activation_end:
+                break;  // the timeline has the pedal
+            case training::EventKind::touch:
+                add(event, Kind::touch, event.value > 0.0 ? "mark.touch_energised" : "mark.touch", structure);
+                break;
+            case training::EventKind::organ_touch:
+                add(event, Kind::harm, "mark.organ_touch", structure);
+                break;
+            case training::EventKind::exposed:
+                add(event, Kind::progress, event.value >= 0.5 ? "mark.exposed_half" : "mark.exposed", structure);
+                break;
+            case training::EventKind::injured:
+                add(event, Kind::harm, "mark.injured", structure);
+                break;
+            case training::EventKind::burnt:
+                add(event, Kind::harm, "mark.burnt", structure);
+                break;
+            case training::EventKind::target:
+                add(event, Kind::progress, "mark.target", fmt::format("{:.0f}", event.value));
+                break;
+            case training::EventKind::completed:
+                add(event, Kind::progress, "mark.completed", "");
+                break;
+            case training::EventKind::limit:
+                add(event, Kind::harm, "mark.limit", event.structure);
+                break;
+        }
+    }
+    return marks;
+}
+
 class TrainingAttempt : public viewer::Attempt {
   public:
     TrainingAttempt(std::shared_ptr<training::Store> store, training::SessionStart start)
         : store_(std::move(store)), start_(std::move(start)) {}
+    /// Goes on from a moment, whose simulation was taken out.
+    TrainingAttempt(std::shared_ptr<training::Store> store, training::SessionStart start, training::Moment from)
+        : store_(std::move(store)), start_(std::move(start)), from_(std::move(from)) {}
 
-    void begin(const simulation::Simulation& run) override { live_.emplace(*store_, start_, run); }
+    void begin(const simulation::Simulation& run) override {
+        if (from_)
+            live_.emplace(*store_, start_, *from_);
+        else
+            live_.emplace(*store_, start_, run);
+        from_.reset();
+    }
     void after_tick(const simulation::Simulation& run, const tissue::Input& input) override {
         live_->after_tick(run, input);
     }
@@ -48,11 +101,24 @@ class TrainingAttempt : public viewer::Attempt {
         }
     }
     bool done() const override { return live_ && live_->ended(); }
+    std::vector<viewer::HudLine> hud() override;
+    viewer::Debrief debrief() override;
 
-    std::vector<viewer::HudLine> hud() override {
-        std::vector<viewer::HudLine> lines;
-        if (!live_ || !start_.task) return lines;
-        using Mood = viewer::HudLine::Mood;
+  private:
+    std::shared_ptr<training::Store> store_;
+    training::SessionStart start_;
+    std::optional<training::Moment> from_;
+    std::optional<training::LiveSession> live_;
+    std::optional<training::SessionRow> row_;
+    std::string trouble_;
+    bool asked_ = false;
+};
+
+std::vector<viewer::HudLine> TrainingAttempt::hud() {
+    std::vector<viewer::HudLine> lines;
+    if (!live_) return lines;
+    using Mood = viewer::HudLine::Mood;
+    if (start_.task) {
         const training::LiveFigures& figures = live_->figures();
         const std::vector<training::Bound>& goals = start_.task->end;
         for (std::size_t k = 0; k < std::min(goals.size(), training::LiveFigures::kMostGoals); ++k) {
@@ -66,56 +132,100 @@ class TrainingAttempt : public viewer::Attempt {
                  met ? Mood::good : Mood::plain});
         }
         const int broken = figures.limits_broken;
-        if (broken > 0) lines.push_back({"Limits broken", fmt::format("{}", broken), Mood::bad});
-        const std::string trouble = live_->trouble();
-        if (!trouble.empty()) lines.push_back({"Recording", trouble, Mood::bad});
-        return lines;
+        if (broken > 0) lines.push_back({"hud.limits_broken", fmt::format("{}", broken), Mood::bad});
     }
+    const std::string trouble = live_->trouble();
+    if (!trouble.empty()) lines.push_back({"hud.recording", trouble, Mood::bad});
+    return lines;
+}
 
-    viewer::Debrief debrief() override {
-        viewer::Debrief debrief;
-        using Mood = viewer::HudLine::Mood;
-        if (!row_) {
-            debrief.title = "The session could not be stored";
-            debrief.lines.push_back({"", trouble_, Mood::bad});
-            return debrief;
-        }
-        debrief.title = live_->result() ? fmt::format("{}: {:.0f} of 100 points", start_.task->title, *row_->points)
-                                        : std::string("Free practice");
-        if (live_->result()) {
-            const training::Score& score = live_->result()->score;
-            for (const training::BrokenLimit& limit : score.broken)
-                debrief.lines.push_back({limit.message, fmt::format("at most {:.0f}", limit.cap), Mood::bad});
-            for (const training::ScorePart& part : score.parts)
-                if (part.known)
-                    debrief.lines.push_back({training::find_metric(part.metric)->title,
-                                             fmt::format("{:.0f} of {:.0f}", part.points, part.weight),
-                                             part.points >= 0.75 * part.weight ? Mood::good : Mood::plain});
-        }
-        if (!asked_) write_debrief_beside(*store_, row_->id);
-        asked_ = true;
-        debrief.report = store_->path(row_->id, "debrief.html");
+viewer::Past past_of(const std::shared_ptr<training::Store>& store, const training::SessionStart& start,
+                     std::int64_t session, std::vector<viewer::Mark> marks) {
+    viewer::Past past;
+    past.recording = store->path(session, "recording.calot");
+    past.marks = std::move(marks);
+    past.resume = [store, start, session](std::int64_t tick, std::shared_ptr<const simulation::Setup> setup) {
+        training::Moment moment = training::reach(*store, session, tick, std::move(setup));
+        std::unique_ptr<simulation::Simulation> run = std::move(moment.run);
+        return std::pair(std::move(run),
+                         std::shared_ptr<viewer::Attempt>(
+                             std::make_shared<TrainingAttempt>(store, start, std::move(moment))));
+    };
+    return past;
+}
+
+viewer::Questionnaire questionnaire_for(const std::shared_ptr<training::Store>& store, std::int64_t session) {
+    viewer::Questionnaire questionnaire;
+    for (const training::Question& question : training::questions()) questionnaire.statements.push_back(question.text);
+    for (const char* word : training::scale()) questionnaire.scale.push_back(word);
+    questionnaire.store = [store, session](const std::vector<std::optional<int>>& answers, const std::string& remark) {
+        store->answer(session, answers, remark);
+    };
+    return questionnaire;
+}
+
+viewer::Debrief TrainingAttempt::debrief() {
+    viewer::Debrief debrief;
+    using Mood = viewer::HudLine::Mood;
+    if (!row_) {
+        debrief.title = "debrief.not_stored";
+        debrief.lines.push_back({"", trouble_, Mood::bad});
         return debrief;
     }
+    debrief.title = start_.task ? start_.task->title : std::string("exercise.free");
+    if (live_->result()) {
+        const training::Score& score = live_->result()->score;
+        debrief.lines.push_back({"debrief.points", fmt::format("{:.0f} / 100", score.points),
+                                 !score.broken.empty() ? Mood::bad
+                                 : score.completed    ? Mood::good
+                                                      : Mood::plain});
+        for (const training::BrokenLimit& limit : score.broken)
+            debrief.lines.push_back({limit.message, fmt::format("\u2264 {:.0f}", limit.cap), Mood::bad});
+        for (const training::ScorePart& part : score.parts)
+            if (part.known)
+                debrief.lines.push_back({training::find_metric(part.metric)->title,
+                                         fmt::format("{:.0f} / {:.0f}", part.points, part.weight),
+                                         part.points >= 0.75 * part.weight ? Mood::good : Mood::plain});
+    }
+    if (!asked_) write_debrief_beside(*store_, row_->id);
+    asked_ = true;
+    debrief.report = store_->path(row_->id, "debrief.html");
+    debrief.past = past_of(store_, start_, row_->id, marks_of(live_->meter().events()));
+    debrief.questionnaire = questionnaire_for(store_, row_->id);
+    return debrief;
+}
 
-  private:
-    std::shared_ptr<training::Store> store_;
-    training::SessionStart start_;
-    std::optional<training::LiveSession> live_;
-    std::optional<training::SessionRow> row_;
-    std::string trouble_;
-    bool asked_ = false;
-};
+/// The newest session that was cut off; older ones are closed as they are when a program next looks at the store.
+std::optional<viewer::CutOff> find_cut_off(const std::shared_ptr<training::Store>& store, const std::string& trainee) {
+    const std::vector<std::int64_t> found = store->abandoned();
+    if (found.empty()) return std::nullopt;
+    const training::SessionRow row = store->session(found.back());
+    viewer::CutOff cut_off;
+    training::SessionStart start{training::task_of(*store, row.id), row.trainee.empty() ? trainee : row.trainee,
+                                 CALOT_VERSION};
+    cut_off.exercise = row.task.empty() ? "free" : row.task;
+    cut_off.title = start.task ? start.task->title : std::string("exercise.free");
+    cut_off.started_utc = row.started_utc;
+    cut_off.past = past_of(store, start, row.id, {});
+    // Closing it takes a run from its last checkpoint on: that is not for the window to wait for.
+    cut_off.close = [store, id = row.id] { write_debrief_beside(*store, id); };
+    return cut_off;
+}
 
 }  // namespace
 
 std::vector<viewer::Exercise> training_exercises(const std::string& data, const std::string& trainee,
-                                                 std::string& trouble) {
+                                                 std::string& trouble, std::optional<viewer::CutOff>& cut_off) {
     std::shared_ptr<training::Store> store;
     try {
         store = std::make_shared<training::Store>(data.empty() ? training::default_data_directory() : data);
     } catch (const InputError& error) {
         trouble = error.describe();
+    }
+    try {
+        if (store) cut_off = find_cut_off(store, trainee);
+    } catch (const std::exception&) {
+        // What cannot be told of it here is told by `calot sessions`.
     }
     const auto attempt = [store, trainee](std::optional<training::Task> task) {
         return [store, trainee, task](const simulation::Setup&) -> std::shared_ptr<viewer::Attempt> {
@@ -132,6 +242,9 @@ std::vector<viewer::Exercise> training_exercises(const std::string& data, const 
         exercise.name = task.title;
         exercise.about = task.goal;
         exercise.assignments = task.assignments;
+        exercise.hints = task.hints;
+        for (const training::Patient& patient : task.patients)
+            exercise.own_patients.push_back({patient.seed, patient.difficulty, patient.name, {}});
         exercise.attempt = attempt(task);
         exercises.push_back(std::move(exercise));
     }

@@ -71,7 +71,7 @@ int view(const ViewOptions& options) {
         return load_scene(choice);
     };
     std::string trouble;
-    trainer.exercises = training_exercises(options.data, options.trainee, trouble);
+    trainer.exercises = training_exercises(options.data, options.trainee, trouble, trainer.cut_off);
     if (!trouble.empty()) fmt::print(stderr, "calot: note: sessions will not be stored: {}\n", trouble);
     if (!options.haptics.empty()) {
         haptics::DeviceChoice choice;

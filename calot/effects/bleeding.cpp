@@ -62,7 +62,7 @@ Bleeding::Bleeding(const tissue::Model& model) : artery_(model.materials.size(),
 }
 
 void Bleeding::step(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
-                    const tissue::Pose& hook, const Fluids& fluids) {
+                    const tissue::Input& input) {
     if (film_m_.empty()) return;
     for (const std::int64_t hexel : exchange.removed_hexels) {
         film_m_[static_cast<std::size_t>(hexel)] = 0.0f;
@@ -72,11 +72,11 @@ void Bleeding::step(const tissue::Model& model, const tissue::State& state, cons
         if (state.tick % kSealEvery == 0) seal(model, state);
         spurt(model, state.tick);
     }
-    if (fluids.irrigation) irrigate(hook, state.tick);
+    if (input.irrigation) irrigate(input.hook, state.tick);
     if (!drops_.empty()) move_drops(model, state);
     if (!wet_.empty()) {
         run_down(model, state, state.tick);
-        if (fluids.suction || fluids.irrigation) clean(model, hook, fluids);
+        if (input.suction || input.irrigation) clean(model, input);
     }
 }
 
@@ -243,14 +243,31 @@ void Bleeding::run_down(const tissue::Model& model, const tissue::State& state, 
 }
 
 /// Suction and irrigation about the hook's tip.
-void Bleeding::clean(const tissue::Model& model, const tissue::Pose& hook, const Fluids& fluids) {
+void Bleeding::clean(const tissue::Model& model, const tissue::Input& input) {
     const auto dt_s = static_cast<float>(model.tick_s);
     const float drawn = std::exp(-dt_s / kSuctionTime_s), rinsed = std::exp(-dt_s / kRinseTime_s);
     for (const std::int32_t hexel : wet_) {
-        const double far = glm::distance(model.hexels.centre_m(hexel), hook.position_m);
+        const double far = glm::distance(model.hexels.centre_m(hexel), input.hook.position_m);
         float& film = film_m_[static_cast<std::size_t>(hexel)];
-        if (fluids.suction && far < kSuctionReach_m) film *= drawn;
-        if (fluids.irrigation && far < kRinseReach_m) film *= rinsed;
+        if (input.suction && far < kSuctionReach_m) film *= drawn;
+        if (input.irrigation && far < kRinseReach_m) film *= rinsed;
+    }
+}
+
+void Bleeding::archive(Archive& archive) {
+    archive.value(breaches_);
+    archive.value(drops_);
+    archive.value(flow_m3_per_s_);
+    archive.value(lost_m3_);
+    archive.value(emitted_);
+    if (archive.reading())
+        for (const std::int32_t hexel : wet_) film_m_[static_cast<std::size_t>(hexel)] = 0.0f;
+    archive.value(wet_);
+    if (breaches_.size() > kMostBreaches || drops_.size() > kMostDrops || wet_.size() > kMostWet)
+        throw std::runtime_error("damaged archive");
+    for (const std::int32_t hexel : wet_) {
+        if (hexel < 0 || static_cast<std::size_t>(hexel) >= film_m_.size()) throw std::runtime_error("damaged archive");
+        archive.value(film_m_[static_cast<std::size_t>(hexel)]);
     }
 }
 

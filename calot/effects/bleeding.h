@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "calot/base/archive.h"
 #include "calot/base/array.h"
 #include "calot/tissue/exchange.h"
 #include "calot/tissue/input.h"
@@ -19,12 +20,6 @@ struct BloodDrop {
     float radius_m = 0.0f;
     float age_s = 0.0f;
     bool water = false;  ///< of the irrigation
-};
-
-/// What runs through the hook's channel while the surgeon asks for it.
-struct Fluids {
-    bool suction = false;     ///< draws off blood and smoke
-    bool irrigation = false;  ///< washes
 };
 
 /// A hole in an artery.
@@ -41,13 +36,17 @@ class Bleeding {
 
     /// After heat and removal.
     void step(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
-              const tissue::Pose& hook, const Fluids& fluids);
+              const tissue::Input& input);
 
     const std::vector<BloodDrop>& drops() const { return drops_; }
     /// Thickness of the film on surface hexels [m], [hexels.cells]; empty where the scene has no artery.
     const Array<float>& film_m() const { return film_m_; }
     double flow_m3_per_s() const { return flow_m3_per_s_; }  ///< of all breaches now
     double lost_m3() const { return lost_m3_; }              ///< since the start
+
+    /// All of it, for a checkpoint; read into a Bleeding of the same model. Throws std::runtime_error when it does not
+    /// fit.
+    void archive(Archive& archive);
 
     static constexpr std::size_t kMostDrops = 768;
     static constexpr std::size_t kMostWet = 12000;  ///< hexels with a film
@@ -60,7 +59,7 @@ class Bleeding {
     void irrigate(const tissue::Pose& hook, std::int64_t tick);
     void move_drops(const tissue::Model& model, const tissue::State& state);
     void run_down(const tissue::Model& model, const tissue::State& state, std::int64_t tick);
-    void clean(const tissue::Model& model, const tissue::Pose& hook, const Fluids& fluids);
+    void clean(const tissue::Model& model, const tissue::Input& input);
     void wet(std::int64_t hexel, float thickness_m);
     void emit(const BloodDrop& drop);
 

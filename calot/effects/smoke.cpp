@@ -165,4 +165,14 @@ void Smoke::move(SmokeParticle& particle, const Stride& stride) {
     faded_kg_ += left - mass(particle);
 }
 
+void Smoke::archive(Archive& archive) {
+    archive.value(particles_);
+    archive.value(pending_);
+    archive.value(emitted_kg_);
+    archive.value(drawn_off_kg_);
+    archive.value(faded_kg_);
+    archive.value(next_seed_);
+    if (particles_.size() > parameters_.max_particles) throw std::runtime_error("damaged archive");
+}
+
 }  // namespace calot::effects

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "calot/base/archive.h"
 #include "calot/base/vec.h"
 #include "calot/tissue/exchange.h"
 #include "calot/tissue/state.h"
@@ -55,6 +56,9 @@ class Smoke {
     void step(const tissue::Exchange& exchange, const std::vector<Vec3f>& world_m, std::int64_t tick, double tick_s,
               bool suction = false);
     const std::vector<SmokeParticle>& particles() const { return particles_; }
+
+    /// All of it, for a checkpoint. Throws std::runtime_error when more than its size is to be read.
+    void archive(Archive& archive);
 
     // Where the mass is: emitted = pending + in particles + drawn off + faded.
     double emitted_kg() const { return emitted_kg_; }

@@ -4,7 +4,7 @@
 //
 //     device.read -> observe energy -> coupling force -> gain, ramp, clamp -> passivity -> device.write
 //                         |                 ^
-//                    HandMessage       ToolMessage           (mailboxes to and from the simulation's thread)
+//                    HandMessage       ToolMessage           (triple buffers to and from the simulation's thread)
 //
 // Any fault sets the force to zero in the same step. Once the fault has gone for `hold_s`, the force comes back over
 // `ramp_s`.
@@ -13,9 +13,9 @@
 #include <atomic>
 #include <cstdint>
 
+#include "calot/base/triple_buffer.h"
 #include "calot/haptics/coupling.h"
 #include "calot/haptics/device.h"
-#include "calot/haptics/mailbox.h"
 #include "calot/haptics/passivity.h"
 #include "calot/haptics/spread.h"
 
@@ -78,9 +78,9 @@ class Servo {
     HapticDevice& device_;
     ServoParameters parameters_;
     PassivityControl passivity_;
-    Mailbox<HandMessage> hands_;
-    Mailbox<ToolMessage> tools_;
-    Mailbox<ServoState> states_, traces_;
+    TripleBuffer<HandMessage> hands_;
+    TripleBuffer<ToolMessage> tools_;
+    TripleBuffer<ServoState> states_, traces_;
     Spread period_, latency_;
 
     ToolMessage tool_;

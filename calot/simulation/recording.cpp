@@ -42,7 +42,8 @@ struct StoredHook {
     std::uint8_t pedal;
     std::uint8_t mode;
     std::uint8_t wipe_tip;
-    std::uint8_t reserved[5];
+    std::uint8_t suction, irrigation;  ///< zero in older recordings
+    std::uint8_t reserved[3];
 };
 static_assert(sizeof(StoredHook) == 72);
 struct StoredGrasper {
@@ -73,6 +74,8 @@ StoredHook store_hook(const tissue::Input& input) {
     stored.power_setting_W = input.power_setting_W;
     stored.pedal = input.pedal ? 1 : 0;
     stored.wipe_tip = input.wipe_tip ? 1 : 0;
+    stored.suction = input.suction ? 1 : 0;
+    stored.irrigation = input.irrigation ? 1 : 0;
     stored.mode = static_cast<std::uint8_t>(input.mode);
     return stored;
 }
@@ -91,6 +94,8 @@ tissue::Input load(const StoredHook& stored) {
     input.power_setting_W = stored.power_setting_W;
     input.pedal = stored.pedal != 0;
     input.wipe_tip = stored.wipe_tip != 0;
+    input.suction = stored.suction != 0;
+    input.irrigation = stored.irrigation != 0;
     input.mode = static_cast<tissue::GeneratorMode>(stored.mode);
     return input;
 }

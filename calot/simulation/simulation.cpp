@@ -69,6 +69,11 @@ bool Simulation::tick(const tissue::Input& input) {
     return state_.status.ok;
 }
 
+void Simulation::archive_effects(Archive& archive) {
+    work_.smoke.archive(archive);
+    work_.bleeding.archive(archive);
+}
+
 void Simulation::world_surface(WorldSurface& out) const {
     const surface::Mesh& mesh = work_.surface.smooth_mesh();
     out.position_m.resize(mesh.position_m.size());

@@ -27,15 +27,17 @@ class Simulation {
     explicit Simulation(std::shared_ptr<const Setup> setup);
 
     /// Goes on from a state that a simulation of the same setup had, at a tick that is a multiple of
-    /// Model::frame_ticks: bit for bit as that one did. What is not part of the state (smoke) starts anew. Throws
-    /// InputError when the state does not fit the model or was taken in the middle of a frame.
+    /// Model::frame_ticks: bit for bit as that one did. What is not part of the state (smoke, blood) starts
+    /// anew unless archive_effects() brings it. Throws InputError when the state does not fit the model or was taken in
+    /// the middle of a frame.
     Simulation(std::shared_ptr<const Setup> setup, tissue::State state);
+
+    /// What is seen and not felt (smoke, blood): no part of the state, so a run that is to go on looking the same takes
+    /// it along. Throws std::runtime_error when what is read is of another scene.
+    void archive_effects(Archive& archive);
 
     /// One step of Model::tick_s. Returns false, and does nothing more, once State::status is not ok.
     bool tick(const tissue::Input& input);
-
-    /// Suction and irrigation from the next tick on. They change what is seen, never the state.
-    void set_fluids(const effects::Fluids& fluids) { work_.fluids = fluids; }
 
     double time_s() const { return static_cast<double>(state_.tick) * setup_->model.tick_s; }
     const Setup& setup() const { return *setup_; }

@@ -113,8 +113,8 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     work.surface.update_dirty_blocks(model, state, exchange);
     clock.lap(Stage::surface);
 
-    work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s, work.fluids.suction);
-    work.bleeding.step(model, state, exchange, input.hook, work.fluids);
+    work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s, input.suction);
+    work.bleeding.step(model, state, exchange, input);
     clock.lap(Stage::smoke);
 
     ++state.tick;

@@ -36,7 +36,6 @@ struct Work {
     surface::Surface surface;
     effects::Smoke smoke;
     effects::Bleeding bleeding;
-    effects::Fluids fluids;  ///< seen, not felt: no part of the input
     std::vector<Vec3f> gas_rest_m, gas_world_m;  ///< places of Exchange::gas
     std::vector<std::int64_t> gas_owner;
     std::array<float, kStages> stage_us{};  ///< wall time of the last tick's stages

@@ -47,6 +47,9 @@ struct Input {
     GeneratorMode mode = GeneratorMode::cut;
     double power_setting_W = 0.0;
     bool wipe_tip = false;  ///< the char on the hook is wiped off
+    // Through the hook's channel. They change what is seen, never the state.
+    bool suction = false;     ///< draws off blood and smoke
+    bool irrigation = false;  ///< washes
 };
 
 }  // namespace calot::tissue

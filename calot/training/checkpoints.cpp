@@ -15,13 +15,14 @@
 //
 //   | tick i64 | raw bytes u64 | XXH3 of the stored bytes u64 | stored bytes u32 | 0 u32 | stored bytes ... |
 //
-// raw = u64 count of fields, u64 bytes of each field, all fields XOR the initial state's, then what the observer knew.
+// raw = u64 count of fields, u64 bytes of each field, all fields XOR the initial state's, then the Aside.
 
 namespace calot::training {
 
 namespace {
 
-constexpr char kMagic[8] = {'C', 'A', 'L', 'O', 'T', 'C', 'K', '1'};
+constexpr char kMagic[8] = {'C', 'A', 'L', 'O', 'T', 'C', 'K', '2'};
+constexpr char kOlder[8] = {'C', 'A', 'L', 'O', 'T', 'C', 'K', '1'};  ///< without effects
 constexpr std::uint64_t kMostBytes = 4ull << 30;
 constexpr int kLevel = 1;  ///< of Zstandard: speed; what differs little from the start is small anyhow
 
@@ -75,7 +76,7 @@ CheckpointWriter::CheckpointWriter(const std::string& path, const tissue::State&
         fail(path_);
 }
 
-void CheckpointWriter::add(const tissue::State& state, const std::string& observer) {
+void CheckpointWriter::add(const tissue::State& state, const Aside& aside) {
     const std::vector<tissue::Field> fields = fields_of(state);
     raw_.clear();
     const auto put = [&](std::uint64_t value) { raw_.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
@@ -85,7 +86,9 @@ void CheckpointWriter::add(const tissue::State& state, const std::string& observ
     for (const tissue::Field& field : fields) raw_.append(static_cast<const char*>(field.data), field.bytes);
     if (raw_.size() - start != initial_.size()) throw std::logic_error("a checkpoint of another scene");
     exclusive_or(raw_.data() + start, initial_.data(), initial_.size());
-    raw_ += observer;
+    Archive along;
+    const_cast<Aside&>(aside).archive(along);  // writing changes nothing
+    raw_ += along.bytes();
 
     stored_.resize(ZSTD_compressBound(raw_.size()));
     const std::size_t size = ZSTD_compress(stored_.data(), stored_.size(), raw_.data(), raw_.size(), kLevel);
@@ -121,7 +124,8 @@ CheckpointReader::CheckpointReader(const std::string& path) : path_(path) {
     const File file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file) return;
     char magic[sizeof(kMagic)] = {};
-    if (std::fread(magic, sizeof(magic), 1, file.get()) != 1 || std::memcmp(magic, kMagic, sizeof(magic)) != 0)
+    if (std::fread(magic, sizeof(magic), 1, file.get()) == 1 && std::memcmp(magic, kOlder, sizeof(magic)) == 0) return;
+    if (std::memcmp(magic, kMagic, sizeof(magic)) != 0)
         throw InputError(path, 0, 0, "these are no checkpoints of Calot",
                          "remove the file: it is made anew when needed");
     std::fseek(file.get(), 0, SEEK_END);
@@ -151,7 +155,7 @@ std::int64_t CheckpointReader::last_before(std::int64_t tick) const {
     return last;
 }
 
-void CheckpointReader::read(std::int64_t tick, tissue::State& state, std::string& observer) const {
+void CheckpointReader::read(std::int64_t tick, tissue::State& state, Aside& aside) const {
     const auto found =
         std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.tick == tick; });
     const File file(std::fopen(path_.c_str(), "rb"), std::fclose);
@@ -186,7 +190,13 @@ void CheckpointReader::read(std::int64_t tick, tissue::State& state, std::string
         exclusive_or(static_cast<char*>(field.data), raw.data() + at, field.bytes);
         at += field.bytes;
     }
-    observer.assign(raw, at, std::string::npos);
+    try {
+        raw.erase(0, at);
+        Archive along(raw);
+        aside.archive(along);
+    } catch (const std::runtime_error&) {
+        throw damaged("it is damaged");
+    }
 }
 
 }  // namespace calot::training

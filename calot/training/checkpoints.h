@@ -8,12 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "calot/base/archive.h"
 #include "calot/tissue/state.h"
 
 namespace calot::training {
 
 /// States are complete only at multiples of this many ticks (Model::frame_ticks).
 bool can_be_stored(const tissue::Model& model, std::int64_t tick);
+
+/// What goes along with a state.
+struct Aside {
+    std::string measured;  ///< Meter::save()
+    std::string effects;   ///< Simulation::archive_effects()
+    void archive(Archive& archive) {
+        archive.value(measured);
+        archive.value(effects);
+    }
+};
 
 class CheckpointReader;
 
@@ -22,8 +33,8 @@ class CheckpointWriter {
     /// Creates the file. `initial`: the state at tick 0; others are stored as differences from it, so that untouched
     /// tissue costs next to nothing. Throws std::system_error.
     CheckpointWriter(const std::string& path, const tissue::State& initial);
-    /// Appends a state (State::tick says when) and what an observer knew (Meter::save()), compressed and flushed.
-    void add(const tissue::State& state, const std::string& observer);
+    /// Appends a state (State::tick says when) and what goes along with it, compressed and flushed.
+    void add(const tissue::State& state, const Aside& aside);
     /// Takes over, as they lie, the checkpoints of another file up to `tick`: those of the run that this one continues.
     void adopt(const std::string& path, std::int64_t tick);
 
@@ -38,17 +49,17 @@ class CheckpointWriter {
 
 class CheckpointReader {
   public:
-    /// Finds what is whole in the file; damaged or cut-off checkpoints are left out. A missing file holds none. Throws
-    /// InputError when it is something else than checkpoints.
+    /// Finds what is whole in the file; damaged or cut-off checkpoints are left out. A missing file, or one of
+    /// an older version, holds none. Throws InputError when it is something else than checkpoints.
     explicit CheckpointReader(const std::string& path);
 
     /// Ascending.
     std::vector<std::int64_t> ticks() const;
     /// The last at or before `tick`; -1 when there is none.
     std::int64_t last_before(std::int64_t tick) const;
-    /// Reads one into `state`, which must be the simulation's state at tick 0, and what the observer knew into
-    /// `observer`. Throws InputError when it is damaged or belongs to another scene or version.
-    void read(std::int64_t tick, tissue::State& state, std::string& observer) const;
+    /// Reads one into `state`, which must be the simulation's state at tick 0, and what goes along with it. Throws
+    /// InputError when it is damaged or belongs to another scene or version.
+    void read(std::int64_t tick, tissue::State& state, Aside& aside) const;
 
   private:
     friend class CheckpointWriter;

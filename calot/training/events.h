@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "calot/training/archive.h"
+#include "calot/base/archive.h"
 
 namespace calot::training {
 

@@ -31,7 +31,7 @@ Recorder::~Recorder() {
 }
 
 void Recorder::after_tick(const simulation::Simulation& run, const tissue::Input& input,
-                          const std::function<std::string()>& observer) {
+                          const std::function<Aside()>& aside) {
     const std::size_t put = put_.load(std::memory_order_relaxed);
     while (put - got_.load(std::memory_order_acquire) >= kRing) {
         if (failed_) return;
@@ -43,7 +43,7 @@ void Recorder::after_tick(const simulation::Simulation& run, const tissue::Input
     if (tick % kTicksPerCheckpoint != 0 || !can_be_stored(run.model(), tick)) return;
     if (slot_.full.load(std::memory_order_acquire)) return;  // the disk is slow: this one is left out
     slot_.state = run.state();
-    slot_.observer = observer();
+    slot_.aside = aside();
     slot_.inputs = put + 1;
     slot_.full.store(true, std::memory_order_release);
 }
@@ -62,7 +62,7 @@ void Recorder::drain() {
 
 void Recorder::write_slot() {
     recording_.flush(slot_.state);
-    checkpoints_.add(slot_.state, slot_.observer);
+    checkpoints_.add(slot_.state, slot_.aside);
     slot_.full.store(false, std::memory_order_release);
 }
 

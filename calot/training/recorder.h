@@ -37,9 +37,9 @@ class Recorder {
              const tissue::State& initial, const Prefix& prefix);
     ~Recorder();
 
-    /// Once a tick, after Simulation::tick(input). `observer` is asked for what it knows when a checkpoint is due.
+    /// Once a tick, after Simulation::tick(input). `aside` is asked for what goes along when a checkpoint is due.
     void after_tick(const simulation::Simulation& run, const tissue::Input& input,
-                    const std::function<std::string()>& observer);
+                    const std::function<Aside()>& aside);
     /// Writes what is left and ends the recording. Throws what went wrong with the files.
     void finish(const tissue::State& state);
     /// For people: what went wrong with the files, "" while all is well.
@@ -56,7 +56,7 @@ class Recorder {
 
     struct Slot {
         tissue::State state;
-        std::string observer;
+        Aside aside;
         std::size_t inputs = 0;  ///< put_ when it was filled
         std::atomic<bool> full{false};
     } slot_;

@@ -36,11 +36,13 @@ void take_checkpoint(const CheckpointReader& checkpoints, std::int64_t tick, Mom
     const std::int64_t at = checkpoints.last_before(tick);
     if (at <= 0) return;
     tissue::State state = moment.run->state();
-    std::string observer;
-    checkpoints.read(at, state, observer);
+    Aside aside;
+    checkpoints.read(at, state, aside);
     moment.run = std::make_unique<simulation::Simulation>(moment.setup, std::move(state));
     try {
-        moment.meter->restore(observer, std::span(moment.recording->inputs).first(static_cast<std::size_t>(at)));
+        Archive effects(std::move(aside.effects));
+        moment.run->archive_effects(effects);
+        moment.meter->restore(aside.measured, std::span(moment.recording->inputs).first(static_cast<std::size_t>(at)));
     } catch (const std::runtime_error&) {
         // Measured for another task: measure from the start instead.
         moment.run = std::make_unique<simulation::Simulation>(moment.setup);
@@ -93,10 +95,10 @@ Moment reach(Store& store, std::int64_t session, std::int64_t tick, std::shared_
     return moment;
 }
 
-void LiveSession::enter(const SessionStart& start, const simulation::Simulation& run) {
+void LiveSession::enter(const SessionStart& start, const simulation::Setup& setup) {
     row_.trainee = start.trainee;
-    row_.scene = run.setup().name;
-    row_.seed = run.setup().seed;
+    row_.scene = setup.name;
+    row_.seed = setup.seed;
     row_.task = start.task ? start.task->name : "";
     row_.program_version = start.program_version;
     task_ = start.task;
@@ -111,7 +113,7 @@ void LiveSession::enter(const SessionStart& start, const simulation::Simulation&
 LiveSession::LiveSession(Store& store, const SessionStart& start, const simulation::Simulation& run)
     : store_(store),
       meter_(std::make_unique<Meter>(run, targets_of(start.task ? &*start.task : nullptr, run.setup()))) {
-    enter(start, run);
+    enter(start, run.setup());
     recorder_ = std::make_unique<Recorder>(folder(), start.program_version, run.setup().scene_text, run.state(),
                                            Recorder::Prefix{});
 }
@@ -120,7 +122,7 @@ LiveSession::LiveSession(Store& store, const SessionStart& start, Moment& from)
     : store_(store), meter_(std::move(from.meter)) {
     row_.parent = from.session;
     row_.parent_tick = from.tick;
-    enter(start, *from.run);
+    enter(start, *from.setup);
     const simulation::Simulation fresh(from.setup);  // its state is the one that checkpoints are told against
     recorder_ = std::make_unique<Recorder>(folder(), start.program_version, from.setup->scene_text, fresh.state(),
                                            Recorder::Prefix{from.recording.get(), from.checkpoints, from.tick});
@@ -146,7 +148,11 @@ void LiveSession::after_tick(const simulation::Simulation& run, const tissue::In
             figures_.ended = watch_->ended();
         }
     }
-    recorder_->after_tick(run, input, [this] { return meter_->save(); });
+    recorder_->after_tick(run, input, [this, &run] {
+        Archive effects;
+        const_cast<simulation::Simulation&>(run).archive_effects(effects);  // writing changes nothing
+        return Aside{meter_->save(), effects.bytes()};
+    });
 }
 
 SessionRow LiveSession::finish(const simulation::Simulation& run) {

@@ -63,7 +63,7 @@ class LiveSession {
   public:
     /// `run` at tick 0. Throws InputError when the store cannot be written.
     LiveSession(Store& store, const SessionStart& start, const simulation::Simulation& run);
-    /// Continues from a moment, whose simulation stays the caller's: pass the moment's meter and recording along.
+    /// Continues from a moment, whose simulation stays the caller's and may have been taken out of it.
     LiveSession(Store& store, const SessionStart& start, Moment& from);
     /// Without finish() the session stays as it would after a crash: to be recovered.
     ~LiveSession();
@@ -85,7 +85,7 @@ class LiveSession {
     const std::optional<Result>& result() const { return result_; }
 
   private:
-    void enter(const SessionStart& start, const simulation::Simulation& run);
+    void enter(const SessionStart& start, const simulation::Setup& setup);
 
     Store& store_;
     SessionRow row_;

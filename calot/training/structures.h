@@ -16,7 +16,7 @@
 
 #include "calot/base/array.h"
 #include "calot/simulation/simulation.h"
-#include "calot/training/archive.h"
+#include "calot/base/archive.h"
 
 namespace calot::training {
 

@@ -22,4 +22,8 @@ const std::vector<Patient>& patients() {
     return list;
 }
 
+const std::vector<Patient>& patients_of(const Exercise& exercise) {
+    return exercise.own_patients.empty() ? patients() : exercise.own_patients;
+}
+
 }  // namespace calot::viewer

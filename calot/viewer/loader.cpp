@@ -6,25 +6,33 @@ namespace calot::viewer {
 
 Loader::Loader(std::function<scene::Scene()> make_scene,
                std::function<std::vector<std::shared_ptr<Observer>>(const simulation::Setup&)> make_observers)
-    : make_scene_(std::move(make_scene)), make_observers_(std::move(make_observers)) {
-    thread_ = std::thread([this] { work(); });
-}
+    : Loader([this, make_scene = std::move(make_scene), make_observers = std::move(make_observers)] {
+          const scene::Scene scene = make_scene();
+          step_ = Step::anatomy;
+          auto setup = std::make_shared<const simulation::Setup>(scene::build(scene));
+          step_ = Step::tissue;
+          Start start;
+          start.run = std::make_unique<simulation::Simulation>(setup);
+          start.setup = setup;
+          if (make_observers) start.observers = make_observers(*setup);
+          return start;
+      }) {}
+
+Loader::Loader(std::function<Start()> make_start)
+    : thread_([this, make = std::move(make_start)] { work(make); }) {}
 
 Loader::~Loader() {
     if (thread_.joinable()) thread_.join();
 }
 
-void Loader::work() {
+void Loader::work(const std::function<Start()>& make_start) {
     try {
-        const scene::Scene scene = make_scene_();
-        step_ = Step::anatomy;
-        auto setup = std::make_shared<const simulation::Setup>(scene::build(scene));
-        step_ = Step::tissue;
-        auto run = std::make_unique<simulation::Simulation>(setup);
+        Start start = make_start();
+        setup_ = std::move(start.setup);
         step_ = Step::picture;
         SessionOptions options;
-        if (make_observers_) options.observers = make_observers_(*setup);
-        session_ = std::make_unique<Session>(std::move(run), std::move(options));
+        options.observers = std::move(start.observers);
+        session_ = std::make_unique<Session>(std::move(start.run), std::move(options));
         step_ = Step::done;
     } catch (...) {
         error_ = std::current_exception();

@@ -18,23 +18,33 @@ class Loader {
     /// Steps, in order; each has a text "loading.N" in the language file.
     enum class Step { scene, anatomy, tissue, picture, done };
 
-    /// `make_scene` runs in the thread; so does `make_observers`.
+    /// What a session is made of.
+    struct Start {
+        std::shared_ptr<const simulation::Setup> setup;
+        std::unique_ptr<simulation::Simulation> run;
+        std::vector<std::shared_ptr<Observer>> observers;
+    };
+
+    /// Both run in the thread.
     Loader(std::function<scene::Scene()> make_scene,
            std::function<std::vector<std::shared_ptr<Observer>>(const simulation::Setup&)> make_observers);
+    /// The same for a run that there is already, somewhere: `make_start` runs in the thread.
+    explicit Loader(std::function<Start()> make_start);
     ~Loader();
 
     Step step() const { return step_; }
     bool finished() const { return finished_; }
     /// Once finished: the session, not yet started; rethrows what went wrong.
     std::unique_ptr<Session> take();
+    /// Then: what it was set up from.
+    std::shared_ptr<const simulation::Setup> setup() const { return setup_; }
 
   private:
-    void work();
+    void work(const std::function<Start()>& make_start);
 
-    std::function<scene::Scene()> make_scene_;
-    std::function<std::vector<std::shared_ptr<Observer>>(const simulation::Setup&)> make_observers_;
     std::atomic<Step> step_{Step::scene};
     std::atomic<bool> finished_{false};
+    std::shared_ptr<const simulation::Setup> setup_;
     std::unique_ptr<Session> session_;
     std::exception_ptr error_;
     std::thread thread_;

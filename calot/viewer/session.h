@@ -13,9 +13,9 @@
 #include <thread>
 #include <vector>
 
+#include "calot/base/triple_buffer.h"
 #include "calot/viewer/session_core.h"
 #include "calot/viewer/tick_clock.h"
-#include "calot/viewer/triple_buffer.h"
 
 namespace calot::viewer {
 
@@ -41,7 +41,8 @@ class Session {
     /// For the window's thread: takes the newest snapshot if there is one that it has not seen. Never waits.
     bool update() { return snapshots_.update(); }
     const Snapshot& snapshot() const { return snapshots_.front(); }
-    Snapshot& snapshot() { return snapshots_.front(); }
+    /// The same for one who draws whatever comes.
+    TripleBuffer<Snapshot>& snapshots() { return snapshots_; }
 
     const simulation::Setup& setup() const { return core_.run().setup(); }
     const Theatre& theatre() const { return core_.theatre(); }

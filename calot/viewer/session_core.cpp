@@ -43,12 +43,28 @@ Theatre theatre_of(const simulation::Setup& setup) {
     return theatre;
 }
 
+Theatre theatre_of(const simulation::Simulation& run) {
+    Theatre theatre = theatre_of(run.setup());
+    const tissue::State& state = run.state();
+    if (state.tick == 0) return theatre;
+    theatre.right_start.tip_m = state.hook.position_m;
+    theatre.right_start.roll_rad = haptics::roll_of(theatre.right.port_m, state.hook, run.setup().hook);
+    if (state.grasper.present == 0) return theatre;
+    instruments::HookShape straight;  // the grasper's reference point lies on its axis
+    straight.foot_length_m = 0.0;
+    theatre.left_start.tip_m = state.grasper.pose.position_m;
+    theatre.left_start.roll_rad = haptics::roll_of(theatre.left.port_m, state.grasper.pose, straight);
+    theatre.left_start.closed = state.grasper.held > 0 || state.grasper.jaw < 0.5 * kJawOpen;
+    return theatre;
+}
+
 SessionCore::SessionCore(std::unique_ptr<simulation::Simulation> run, std::vector<std::shared_ptr<Observer>> observers)
     : run_(std::move(run)),
       observers_(std::move(observers)),
-      theatre_(theatre_of(run_->setup())),
+      theatre_(theatre_of(*run_)),
       right_(theatre_.right_start),
       left_(theatre_.left_start),
+      jaw_(run_->state().grasper.present != 0 ? run_->state().grasper.jaw : kJawOpen),
       picture_(run_->setup()) {
     input_.hook = right_.pose(theatre_.right.port_m, run_->setup().hook);
     for (const auto& observer : observers_) observer->begin(*run_);
@@ -80,6 +96,8 @@ tissue::Input SessionCore::input_for(const Controls& controls) {
                                  : tissue::GeneratorMode::coag;
     input.power_setting_W = controls.yellow ? controls.cut_W : controls.blue ? controls.coag_W : 0.0;
     input.wipe_tip = controls.wipe_tip;
+    input.suction = controls.suction;
+    input.irrigation = controls.irrigation;
     return input;
 }
 
@@ -96,7 +114,6 @@ void SessionCore::follow_device(const Controls& controls) {
 
 bool SessionCore::tick(const Controls& controls) {
     input_ = input_for(controls);
-    run_->set_fluids({controls.suction, controls.irrigation});
     follow_device(controls);
     const bool ok = run_->tick(input_);
     if (device_) device_->feel(run_->state());
@@ -109,25 +126,30 @@ bool SessionCore::tick(const Controls& controls) {
     return ok;
 }
 
-void SessionCore::fill(Snapshot& snapshot) {
-    const tissue::State& state = run_->state();
-    picture_.fill(*run_, input_, snapshot.view);
+void fill_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture,
+                   Snapshot& snapshot) {
+    const tissue::State& state = run.state();
+    picture.fill(run, input, snapshot.view);
     snapshot.tick = state.tick;
-    snapshot.time_s = run_->time_s();
+    snapshot.time_s = run.time_s();
     snapshot.generator = state.generator;
-    snapshot.input = input_;
+    snapshot.input = input;
     snapshot.hook_force_N = state.hook_force_N;
-    snapshot.tip_m = right_.tip_m();
-    snapshot.boiling_kg_per_s = boiling_kg_per_s_;
-    snapshot.fluids = run_->work().fluids;
-    snapshot.bleeding_m3_per_s = run_->work().bleeding.flow_m3_per_s();
-    snapshot.blood_lost_m3 = run_->work().bleeding.lost_m3();
+    snapshot.tip_m = input.hook.position_m;
+    snapshot.bleeding_m3_per_s = run.work().bleeding.flow_m3_per_s();
+    snapshot.blood_lost_m3 = run.work().bleeding.lost_m3();
     snapshot.status = state.status;
     snapshot.hottest_K = 310.15f;
-    for (const tissue::NearHexel& near : run_->work().exchange.near)
+    for (const tissue::NearHexel& near : run.work().exchange.near)
         if (near.bare_gap_m < 1e-3f)
             snapshot.hottest_K =
-                std::max(snapshot.hottest_K, run_->work().thermal.temperature_K[static_cast<std::size_t>(near.hexel)]);
+                std::max(snapshot.hottest_K, run.work().thermal.temperature_K[static_cast<std::size_t>(near.hexel)]);
+}
+
+void SessionCore::fill(Snapshot& snapshot) {
+    fill_snapshot(*run_, input_, picture_, snapshot);
+    snapshot.tip_m = right_.tip_m();
+    snapshot.boiling_kg_per_s = boiling_kg_per_s_;
 }
 
 }  // namespace calot::viewer

@@ -21,6 +21,12 @@ struct Theatre {
 };
 Theatre theatre_of(const simulation::Setup& setup);
 
+/// The same with both hands where a run has them: it goes on from there.
+Theatre theatre_of(const simulation::Simulation& run);
+
+/// What does not come from the hands: picture, generator, forces, blood.
+void fill_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture, Snapshot& snapshot);
+
 /// Fills the snapshot and turns controls into inputs, tick by tick; no clock, no thread. What the thread of a Session
 /// runs, and what tests drive.
 class SessionCore {
@@ -54,7 +60,7 @@ class SessionCore {
     std::vector<std::shared_ptr<Observer>> observers_;
     Theatre theatre_;
     HeldInstrument right_, left_;
-    double jaw_ = 0.7;  ///< of the grasper, 0 closed ... 1 wide open
+    double jaw_;  ///< of the grasper, 0 closed ... 1 wide open
     std::shared_ptr<haptics::Session> device_;
     Picture picture_;
     tissue::Input input_;

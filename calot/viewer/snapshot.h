@@ -31,7 +31,6 @@ struct Figures {
     Pace pace;
     std::int64_t sequence = 0;  ///< of the controls that it answers
     double sampled_s = 0.0;     ///< when those were read
-    effects::Fluids fluids;
     double bleeding_m3_per_s = 0.0;
     double blood_lost_m3 = 0.0;
     bool paused = false;

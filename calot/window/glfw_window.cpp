@@ -105,9 +105,9 @@ void GlfwWindow::toggle_fullscreen() {
 void GlfwWindow::capture_mouse(bool capture) {
     if (capture == captured_) return;
     captured_ = capture;
-    fresh_cursor_ = true;
     moved_x_ = moved_y_ = wheel_ = 0.0;
     glfwSetInputMode(window_, GLFW_CURSOR, capture ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    glfwGetCursorPos(window_, &cursor_x_, &cursor_y_);  // movement starts from here
 }
 
 std::string GlfwWindow::renderer() const {
@@ -116,23 +116,24 @@ std::string GlfwWindow::renderer() const {
 }
 
 void GlfwWindow::on_key(int key, int action) {
-    if (action != GLFW_PRESS) return;
+    if (action == GLFW_RELEASE || (typing_ && key < GLFW_KEY_ESCAPE)) return;
+    if (action == GLFW_REPEAT && key != GLFW_KEY_LEFT && key != GLFW_KEY_RIGHT) return;
     static constexpr std::pair<int, Command> kCommands[] = {
         {GLFW_KEY_ESCAPE, Command::pause},   {GLFW_KEY_P, Command::pause},   {GLFW_KEY_F1, Command::help},
         {GLFW_KEY_H, Command::help},         {GLFW_KEY_F2, Command::pace},   {GLFW_KEY_F5, Command::reset},
         {GLFW_KEY_F11, Command::fullscreen}, {GLFW_KEY_M, Command::mute},    {GLFW_KEY_F12, Command::picture},
         {GLFW_KEY_R, Command::grasp},        {GLFW_KEY_X, Command::wipe},    {GLFW_KEY_1, Command::preset1},
         {GLFW_KEY_2, Command::preset2},      {GLFW_KEY_3, Command::preset3}, {GLFW_KEY_4, Command::preset4},
+        {GLFW_KEY_SPACE, Command::play},     {GLFW_KEY_LEFT, Command::earlier}, {GLFW_KEY_RIGHT, Command::later},
+        {GLFW_KEY_HOME, Command::first},     {GLFW_KEY_END, Command::last},  {GLFW_KEY_ENTER, Command::enter},
     };
     for (const auto& [wanted, which] : kCommands)
         if (key == wanted) command(which);
 }
 
 void GlfwWindow::on_cursor(double x, double y) {
-    if (!std::exchange(fresh_cursor_, false)) {
-        moved_x_ += x - cursor_x_;
-        moved_y_ += y - cursor_y_;
-    }
+    moved_x_ += x - cursor_x_;
+    moved_y_ += y - cursor_y_;
     cursor_x_ = x;
     cursor_y_ = y;
 }

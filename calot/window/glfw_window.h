@@ -25,6 +25,12 @@ enum class Command {
     preset2,
     preset3,
     preset4,
+    play,     ///< these six on a timeline
+    earlier,  ///< again and again while it is held
+    later,
+    first,
+    last,
+    enter,
     count
 };
 
@@ -54,6 +60,8 @@ class GlfwWindow {
     /// What was done since the last call.
     viewer::Devices take_devices();
     bool take(Command command);
+    /// While text is being typed, letters and digits are no commands.
+    void type(bool typing) { typing_ = typing; }
     std::string renderer() const;  ///< OpenGL's name for it
     GLFWwindow* handle() const { return window_; }
 
@@ -69,7 +77,7 @@ class GlfwWindow {
 
     GLFWwindow* window_ = nullptr;
     bool captured_ = false;
-    bool fresh_cursor_ = true;  ///< the next position is where movement starts from
+    bool typing_ = false;
     double cursor_x_ = 0.0, cursor_y_ = 0.0;
     double moved_x_ = 0.0, moved_y_ = 0.0, wheel_ = 0.0;
     std::bitset<static_cast<std::size_t>(Command::count)> commands_;

@@ -88,12 +88,13 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
-void Gui::begin_frame(bool mouse) {
+void Gui::begin_frame(bool mouse, bool keys) {
     ImGuiIO& io = ImGui::GetIO();
     // While the mouse is the hand, panels must not answer to it, nor keys move a focus about.
     const ImGuiConfigFlags hands_off = ImGuiConfigFlags_NoMouse;
     const ImGuiConfigFlags navigation = ImGuiConfigFlags_NavEnableKeyboard | ImGuiConfigFlags_NavEnableGamepad;
-    io.ConfigFlags = mouse ? (io.ConfigFlags & ~hands_off) | navigation : (io.ConfigFlags | hands_off) & ~navigation;
+    io.ConfigFlags = (io.ConfigFlags & ~(hands_off | navigation)) | (mouse ? 0 : hands_off) |
+                     (mouse && keys ? navigation : 0);
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
@@ -102,6 +103,48 @@ void Gui::begin_frame(bool mouse) {
 void Gui::end_frame() {
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+ImVec2 middle_of_screen() {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    return ImVec2(0.5f * screen.x, 0.5f * screen.y);
+}
+
+bool wide_button(const Gui& gui, const std::string& label, float height) {
+    return ImGui::Button(label.c_str(), ImVec2(-1.0f, height * gui.unit()));
+}
+
+bool main_button(const Gui&, const std::string& label, ImVec2 size) {
+    ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.80f, 0.48f, 0.16f, 1.0f));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(0.90f, 0.57f, 0.22f, 1.0f));
+    ImGui::PushStyleColor(ImGuiCol_ButtonActive, ImVec4(0.96f, 0.66f, 0.32f, 1.0f));
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.06f, 0.05f, 0.04f, 1.0f));
+    const bool pressed = ImGui::Button(label.c_str(), size);
+    ImGui::PopStyleColor(4);
+    return pressed;
+}
+
+void heading(const Gui& gui, const std::string& words) {
+    ImGui::PushFont(gui.fonts().large);
+    wrapped(words, colour::kAccent);
+    ImGui::PopFont();
+    ImGui::Dummy(ImVec2(1.0f, 4.0f * gui.unit()));
+}
+
+void name_and_value(const std::string& name, const std::string& value, const ImVec4& value_colour) {
+    const float room = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
+    const float width = ImGui::CalcTextSize(value.c_str()).x;
+    const bool together = ImGui::CalcTextSize(name.c_str()).x + width + ImGui::GetStyle().ItemSpacing.x <= room;
+    wrapped(name, colour::kFaint);
+    if (together) ImGui::SameLine();
+    ImGui::SetCursorPosX(start + room - width);
+    ImGui::TextColored(value_colour, "%s", value.c_str());
+}
+
+void wrapped(const std::string& words, const ImVec4& tint) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextColored(tint, "%s", words.c_str());
+    ImGui::PopTextWrapPos();
 }
 
 bool begin_panel(const char* name, ImVec2 at, ImVec2 pivot, ImVec2 size, float opacity) {

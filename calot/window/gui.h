@@ -1,6 +1,8 @@
 #pragma once
 // Dear ImGui set up as Calot looks: calm, dark, large.
 
+#include <string>
+
 #include <imgui.h>
 
 struct GLFWwindow;
@@ -32,7 +34,8 @@ class Gui {
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    void begin_frame(bool mouse);
+    /// `mouse`: it is not the hand; `keys`: arrows and Enter go about the panels.
+    void begin_frame(bool mouse, bool keys);
     void end_frame();  ///< draws into the bound frame buffer
 
     const Fonts& fonts() const { return fonts_; }
@@ -42,6 +45,16 @@ class Gui {
     Fonts fonts_;
     float unit_;
 };
+
+ImVec2 middle_of_screen();
+bool wide_button(const Gui& gui, const std::string& label, float height = 52.0f);
+/// What is to be done next: stands out.
+bool main_button(const Gui& gui, const std::string& label, ImVec2 size);
+void heading(const Gui& gui, const std::string& words);
+/// Name on the left, value on the right; below one another where both do not fit.
+void name_and_value(const std::string& name, const std::string& value, const ImVec4& value_colour = colour::kText);
+/// Text in lines as long as there is room.
+void wrapped(const std::string& words, const ImVec4& tint = colour::kText);
 
 /// Starts a panel without a frame at a place; end with ImGui::End().
 bool begin_panel(const char* name, ImVec2 at, ImVec2 pivot, ImVec2 size, float opacity = 0.78f);

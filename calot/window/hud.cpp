@@ -19,19 +19,6 @@ ImVec4 mood_colour(HudLine::Mood mood) {
     return mood == HudLine::Mood::good ? colour::kGood : mood == HudLine::Mood::bad ? colour::kBad : colour::kText;
 }
 
-/// Name on the left, value on the right.
-void line(const std::string& name, const std::string& value, const ImVec4& value_colour = colour::kText) {
-    ImGui::TextColored(colour::kFaint, "%s", name.c_str());
-    const float width = ImGui::CalcTextSize(value.c_str()).x;
-    ImGui::SameLine(ImGui::GetWindowWidth() - width - ImGui::GetStyle().WindowPadding.x);
-    ImGui::TextColored(value_colour, "%s", value.c_str());
-}
-
-std::string clock_text(double time_s) {
-    const int seconds = static_cast<int>(time_s);
-    return fmt::format("{}:{:02d}", seconds / 60, seconds % 60);
-}
-
 /// One half of the generator: its colour, its setting, lit while its pedal is down.
 void pedal_box(const Gui& gui, const char* name, double setting_W, const ImVec4& tint, bool lit, float width) {
     const float u = gui.unit(), height = 86.0f * u;
@@ -65,14 +52,14 @@ void draw_generator(const Gui& gui, const Language& text, const HudContent& cont
         ImGui::SameLine(0.0f, 8.0f * u);
         pedal_box(gui, text("generator.coag").c_str(), content.settings.coag_W, colour::kBlue, coagulating, half);
         const tissue::GeneratorState& g = shot.generator;
-        line(text("generator.power"), fmt::format("{:.1f} W", g.power_W));
+        name_and_value(text("generator.power"), fmt::format("{:.1f} W", g.power_W));
         if (shot.input.pedal && g.limit >= 0 && g.limit <= 3)  // what the generator is up against
-            line(text("generator.limit"), text("generator.limit." + std::to_string(g.limit)));
+            name_and_value(text("generator.limit"), text("generator.limit." + std::to_string(g.limit)));
         else
-            line(text("generator.limit"), "\xe2\x80\x93");
-        line(text("generator.voltage"), fmt::format("{:.0f} V", g.voltage_V));
-        line(text("generator.current"), fmt::format("{:.0f} mA", 1e3 * g.current_A));
-        line(text("generator.impedance"), g.impedance_Ohm > 0.0 && shot.input.pedal
+            name_and_value(text("generator.limit"), "\xe2\x80\x93");
+        name_and_value(text("generator.voltage"), fmt::format("{:.0f} V", g.voltage_V));
+        name_and_value(text("generator.current"), fmt::format("{:.0f} mA", 1e3 * g.current_A));
+        name_and_value(text("generator.impedance"), g.impedance_Ohm > 0.0 && shot.input.pedal
                                               ? fmt::format("{:.0f} \xce\xa9", g.impedance_Ohm)
                                               : "\xe2\x80\x93");
     }
@@ -83,16 +70,28 @@ void draw_exercise(const Gui& gui, const Language& text, const HudContent& conte
     const float u = gui.unit();
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     if (begin_panel("exercise", ImVec2(screen.x - kMargin * u, kMargin * u), ImVec2(1.0f, 0.0f),
-                    ImVec2(280.0f * u, 0.0f))) {
-        ImGui::PushTextWrapPos(0.0f);
-        ImGui::TextColored(colour::kAccent, "%s", text(content.exercise).c_str());
-        ImGui::PopTextWrapPos();
-        line(text("hud.time"), clock_text(content.snapshot.time_s));
-        line(text("hud.force"), fmt::format("{:.2f} N", glm::length(content.snapshot.hook_force_N)),
+                    ImVec2(310.0f * u, 0.0f))) {
+        wrapped(text(content.exercise), colour::kAccent);
+        name_and_value(text("hud.time"), clock_text(content.snapshot.time_s));
+        name_and_value(text("hud.force"), fmt::format("{:.2f} N", glm::length(content.snapshot.hook_force_N)),
              glm::length(content.snapshot.hook_force_N) > 3.0 ? colour::kBad : colour::kText);
-        for (const HudLine& each : content.lines) line(text(each.name), text(each.value), mood_colour(each.mood));
+        for (const HudLine& each : content.lines) name_and_value(text(each.name), text(each.value), mood_colour(each.mood));
     }
     ImGui::End();
+}
+
+/// What the hand on a device feels.
+void draw_haptics(const Language& text, const HapticsFigures& haptics) {
+    if (haptics.device.empty()) return;
+    const ImVec4& tint = haptics.trouble.empty() ? colour::kText : colour::kBad;
+    name_and_value(text("haptics.device"), haptics.device, tint);
+    if (!haptics.trouble.empty()) {
+        wrapped(haptics.trouble, colour::kBad);
+        return;
+    }
+    name_and_value(text("haptics.rate"), fmt::format("{:.0f} /s", haptics.steps_per_s),
+                   haptics.steps_per_s < 900.0 ? colour::kBad : colour::kGood);
+    name_and_value(text("haptics.force"), fmt::format("{:.2f} N", haptics.force_N));
 }
 
 void draw_pace(const Gui& gui, const Language& text, const HudContent& content) {
@@ -101,15 +100,14 @@ void draw_pace(const Gui& gui, const Language& text, const HudContent& content) 
     const bool slow = pace.ticks_per_s < 985.0;
     if (begin_panel("pace", ImVec2(kMargin * u, kMargin * u), ImVec2(0.0f, 0.0f), ImVec2(300.0f * u, 0.0f))) {
         ImGui::PushFont(gui.fonts().small);
-        line(text("pace.physics"), fmt::format("{:.0f} /s", pace.ticks_per_s), slow ? colour::kBad : colour::kGood);
-        line(text("pace.tick"), fmt::format("{:.2f} ms", 1e-3 * pace.tick_us));
-        line(text("pace.late"), fmt::format("{}", pace.late_ticks));
-        line(text("pace.pictures"), fmt::format("{:.0f} /s", content.figures.pictures_per_s));
-        line(text("pace.latency"), fmt::format("{:.0f} ms", content.figures.latency_ms));
-        line(text("pace.quality"), content.figures.tier);
-        ImGui::PushTextWrapPos(0.0f);
-        ImGui::TextColored(colour::kFaint, "%s", content.figures.scheduling.c_str());
-        ImGui::PopTextWrapPos();
+        name_and_value(text("pace.physics"), fmt::format("{:.0f} /s", pace.ticks_per_s), slow ? colour::kBad : colour::kGood);
+        name_and_value(text("pace.tick"), fmt::format("{:.2f} ms", 1e-3 * pace.tick_us));
+        name_and_value(text("pace.late"), fmt::format("{}", pace.late_ticks));
+        name_and_value(text("pace.pictures"), fmt::format("{:.0f} /s", content.figures.pictures_per_s));
+        name_and_value(text("pace.latency"), fmt::format("{:.0f} ms", content.figures.latency_ms));
+        name_and_value(text("pace.quality"), content.figures.tier);
+        wrapped(content.figures.scheduling, colour::kFaint);
+        draw_haptics(text, content.figures.haptics);
         ImGui::PopFont();
     }
     ImGui::End();
@@ -164,13 +162,37 @@ void draw_help_group(float u, const Language& text, const HelpGroup& group) {
     ImGui::Dummy(ImVec2(1.0f, 6.0f * u));
 }
 
+/// Seconds until hands move again, large, in the middle.
+void draw_countdown(const Gui& gui, const Language& text, double left_s) {
+    if (left_s <= 0.0) return;
+    const float u = gui.unit();
+    if (begin_panel("countdown", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(380.0f * u, 0.0f), 0.7f)) {
+        const auto centred = [](const std::string& words) {
+            const float room = ImGui::GetWindowWidth(), width = ImGui::CalcTextSize(words.c_str()).x;
+            ImGui::SetCursorPosX(0.5f * (room - width));
+            ImGui::TextUnformatted(words.c_str());
+        };
+        centred(text("hud.ready"));
+        ImGui::PushFont(gui.fonts().title);
+        centred(fmt::format("{:.0f}", std::ceil(left_s)));
+        ImGui::PopFont();
+    }
+    ImGui::End();
+}
+
 }  // namespace
+
+std::string clock_text(double time_s) {
+    const int seconds = static_cast<int>(time_s);
+    return fmt::format("{}:{:02d}", seconds / 60, seconds % 60);
+}
 
 void draw_hud(const Gui& gui, const Language& text, const HudContent& content) {
     draw_generator(gui, text, content);
     draw_exercise(gui, text, content);
     if (content.settings.show_pace) draw_pace(gui, text, content);
     draw_banner(gui, text, content);
+    draw_countdown(gui, text, content.countdown_s);
     draw_hint(gui, text);
 }
 

@@ -41,11 +41,11 @@ PictureThread::~PictureThread() {
     glfwDestroyWindow(context_);
 }
 
-void PictureThread::show(viewer::Session* session) {
+void PictureThread::show(TripleBuffer<viewer::Snapshot>* snapshots) {
     waiting_ = true;
     const std::lock_guard lock(mutex_);
     waiting_ = false;
-    session_ = session;
+    snapshots_ = snapshots;
 }
 
 void PictureThread::wish(const PictureWish& wish) {
@@ -73,13 +73,13 @@ void PictureThread::work() {
 
 bool PictureThread::draw_once() {
     const std::lock_guard lock(mutex_);
-    if (session_ == nullptr || !trouble_.empty()) return false;
+    if (snapshots_ == nullptr || !trouble_.empty()) return false;
     // A wish comes with every turn of the window's loop: the scope may have moved while the patient did not.
-    const bool moved = wishes_.update(), changed = session_->update();
+    const bool moved = wishes_.update(), changed = snapshots_->update();
     if (!moved && !changed) return false;
     if (wishes_.front().width <= 0) return false;
     try {
-        draw(*session_, wishes_.front());
+        draw(snapshots_->front(), wishes_.front());
     } catch (const std::exception& error) {
         trouble_ = error.what();
     }
@@ -118,7 +118,7 @@ void PictureThread::prepare_target(Target& target, int width, int height) {
     target.height = height;
 }
 
-void PictureThread::draw(viewer::Session& session, const PictureWish& wish) {
+void PictureThread::draw(viewer::Snapshot& snapshot, const PictureWish& wish) {
     Picture& picture = pictures_.back();
     // The slot's own texture, so that none is drawn into that the window may still show.
     for (next_target_ = 0; next_target_ < targets_.size(); ++next_target_)
@@ -128,7 +128,7 @@ void PictureThread::draw(viewer::Session& session, const PictureWish& wish) {
             ++next_target_;
     prepare(wish);
     const double begun_s = viewer::steady_s();
-    render::View& view = session.snapshot().view;
+    render::View& view = snapshot.view;
     view.camera = wish.camera;
     view.lens = wish.lens;
     renderer_->draw(view);
@@ -140,7 +140,7 @@ void PictureThread::draw(viewer::Session& session, const PictureWish& wish) {
     picture.texture = target.texture;
     picture.width = target.width;
     picture.height = target.height;
-    picture.figures = session.snapshot();
+    picture.figures = snapshot;
     picture.tier = governor_.tier();
     picture.draw_s = governor_.mean_s();
     pictures_.publish();

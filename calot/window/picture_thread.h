@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "calot/base/triple_buffer.h"
 #include "calot/render/renderer.h"
 #include "calot/viewer/quality.h"
 #include "calot/viewer/session.h"
@@ -44,8 +45,8 @@ class PictureThread {
     PictureThread(const PictureThread&) = delete;
     PictureThread& operator=(const PictureThread&) = delete;
 
-    /// Draws from this session's snapshots from now on; null: rests. Returns once the old one is no longer looked at.
-    void show(viewer::Session* session);
+    /// Draws these snapshots from now on; null: rests. Returns once the old ones are no longer looked at.
+    void show(TripleBuffer<viewer::Snapshot>* snapshots);
     void wish(const PictureWish& wish);
     /// True when there is a newer picture than the last.
     bool update() { return pictures_.update(); }
@@ -60,7 +61,7 @@ class PictureThread {
     };
     void work();
     bool draw_once();
-    void draw(viewer::Session& session, const PictureWish& wish);
+    void draw(viewer::Snapshot& snapshot, const PictureWish& wish);
     void prepare(const PictureWish& wish);
     void prepare_target(Target& target, int width, int height);
 
@@ -70,11 +71,11 @@ class PictureThread {
     render::Quality quality_ = render::Quality::low;
     std::array<Target, 3> targets_;
     std::size_t next_target_ = 0;
-    viewer::TripleBuffer<PictureWish> wishes_;
-    viewer::TripleBuffer<Picture> pictures_;
+    TripleBuffer<PictureWish> wishes_;
+    TripleBuffer<Picture> pictures_;
 
     std::mutex mutex_;  ///< held while a picture is drawn
-    viewer::Session* session_ = nullptr;
+    TripleBuffer<viewer::Snapshot>* snapshots_ = nullptr;
     std::string trouble_;
     std::atomic<bool> waiting_{false};  ///< somebody wants the mutex
     std::atomic<bool> closing_{false};

@@ -10,103 +10,13 @@
 
 namespace calot::window {
 
-namespace {
-
 using viewer::Language;
 
-ImVec2 middle() {
-    const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    return ImVec2(0.5f * screen.x, 0.5f * screen.y);
-}
-
-bool wide_button(const Gui& gui, const std::string& label, float height = 52.0f) {
-    return ImGui::Button(label.c_str(), ImVec2(-1.0f, height * gui.unit()));
-}
-
-void heading(const Gui& gui, const std::string& words) {
-    ImGui::PushFont(gui.fonts().large);
-    ImGui::TextColored(colour::kAccent, "%s", words.c_str());
-    ImGui::PopFont();
-    ImGui::Dummy(ImVec2(1.0f, 4.0f * gui.unit()));
-}
-
-/// A button with a second line that explains it.
-bool exercise_button(const Gui& gui, const Language& text, const viewer::Exercise& exercise, int number) {
-    const float u = gui.unit(), width = ImGui::GetContentRegionAvail().x, height = 72.0f * u;
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::PushID(number);
-    const bool pressed = ImGui::Button("##exercise", ImVec2(width, height));
-    ImGui::PopID();
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddText(ImVec2(at.x + 18 * u, at.y + 10 * u), ImGui::GetColorU32(colour::kText), text(exercise.name).c_str());
-    list->AddText(gui.fonts().small, gui.fonts().small->FontSize, ImVec2(at.x + 18 * u, at.y + 39 * u),
-                  ImGui::GetColorU32(colour::kFaint), text(exercise.about).c_str());
-    return pressed;
-}
-
-std::string patient_name(const Language& text, int index) {
-    const viewer::Patient& patient = viewer::patients()[static_cast<std::size_t>(index)];
-    return fmt::format("{}  ({})", text(patient.about), text("difficulty." + std::to_string(patient.difficulty)));
-}
-
-void draw_patients(const Gui& gui, const Language& text, int& patient, int& seed) {
-    const int count = static_cast<int>(viewer::patients().size());
-    const std::string shown = patient >= 0 ? patient_name(text, patient) : text("patient.by_seed");
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextColored(colour::kFaint, "%s", text("start.patient").c_str());
-    ImGui::SameLine(110.0f * gui.unit());
-    ImGui::SetNextItemWidth(-1.0f);
-    if (ImGui::BeginCombo("##patient", shown.c_str())) {
-        for (int k = 0; k < count; ++k)
-            if (ImGui::Selectable(patient_name(text, k).c_str(), k == patient)) patient = k;
-        if (ImGui::Selectable(text("patient.by_seed").c_str(), patient < 0)) patient = -1;
-        ImGui::EndCombo();
-    }
-    if (patient >= 0) return;
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextColored(colour::kFaint, "%s", text("start.seed").c_str());
-    ImGui::SameLine(110.0f * gui.unit());
-    ImGui::SetNextItemWidth(-1.0f);
-    ImGui::InputInt("##seed", &seed);
-    seed = std::clamp(seed, 0, 1'000'000'000);
-}
-
-}  // namespace
-
-StartChoice draw_start(const Gui& gui, const Language& text, const std::vector<viewer::Exercise>& exercises,
-                       int& patient, int& seed, bool patients) {
+void draw_loading(const Gui& gui, const Language& text, const char* title, viewer::Loader::Step step,
+                  double waited_s) {
     const float u = gui.unit();
-    const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    StartChoice choice;
-    const float width = std::min(560.0f * u, screen.x - 32.0f * u);
-    if (begin_panel("start", ImVec2(std::min(48.0f * u, 0.03f * screen.x), 0.5f * screen.y), ImVec2(0.0f, 0.5f),
-                    ImVec2(width, std::min(760.0f * u, screen.y - 24.0f * u)), 0.86f)) {
-        ImGui::PushFont(gui.fonts().title);
-        ImGui::TextUnformatted("Calot");
-        ImGui::PopFont();
-        ImGui::TextColored(colour::kFaint, "%s", text("start.subtitle").c_str());
-        ImGui::Dummy(ImVec2(1.0f, 8.0f * u));
-        if (patients) draw_patients(gui, text, patient, seed);
-        ImGui::Dummy(ImVec2(1.0f, 4.0f * u));
-        const float below = 2.0f * 52.0f * u + 3.0f * ImGui::GetStyle().ItemSpacing.y + 26.0f * u;
-        ImGui::BeginChild("list", ImVec2(0.0f, -below));
-        for (std::size_t k = 0; k < exercises.size(); ++k)
-            if (exercise_button(gui, text, exercises[k], static_cast<int>(k))) choice.exercise = static_cast<int>(k);
-        ImGui::EndChild();
-        choice.settings = wide_button(gui, text("start.settings"));
-        choice.quit = wide_button(gui, text("start.quit"));
-        ImGui::PushFont(gui.fonts().small);
-        ImGui::TextColored(colour::kFaint, "%s", text("start.notice").c_str());
-        ImGui::PopFont();
-    }
-    ImGui::End();
-    return choice;
-}
-
-void draw_loading(const Gui& gui, const Language& text, viewer::Loader::Step step, double waited_s) {
-    const float u = gui.unit();
-    if (begin_panel("loading", middle(), ImVec2(0.5f, 0.5f), ImVec2(520.0f * u, 0.0f), 0.9f)) {
-        heading(gui, text("loading.title"));
+    if (begin_panel("loading", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(520.0f * u, 0.0f), 0.9f)) {
+        heading(gui, text(title));
         const int done = static_cast<int>(step);
         // A step is of unknown length: the bar creeps on within it, so that it never stands still.
         const double within = 1.0 - std::exp(-waited_s);
@@ -117,11 +27,12 @@ void draw_loading(const Gui& gui, const Language& text, viewer::Loader::Step ste
     ImGui::End();
 }
 
-PauseChoice draw_pause(const Gui& gui, const Language& text) {
+PauseChoice draw_pause(const Gui& gui, const Language& text, bool rewind) {
     PauseChoice choice = PauseChoice::none;
-    if (begin_panel("pause", middle(), ImVec2(0.5f, 0.5f), ImVec2(440.0f * gui.unit(), 0.0f), 0.9f)) {
+    if (begin_panel("pause", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(440.0f * gui.unit(), 0.0f), 0.9f)) {
         heading(gui, text("pause.title"));
         if (wide_button(gui, text("pause.resume"))) choice = PauseChoice::resume;
+        if (rewind && wide_button(gui, text("pause.rewind"))) choice = PauseChoice::rewind;
         if (wide_button(gui, text("pause.help"))) choice = PauseChoice::help;
         if (wide_button(gui, text("pause.settings"))) choice = PauseChoice::settings;
         if (wide_button(gui, text("pause.reset"))) choice = PauseChoice::reset;
@@ -216,7 +127,7 @@ bool choose_tier(const Gui& gui, const Language& text, const std::string& tier_n
 bool draw_settings(const Gui& gui, const Language& text, const std::vector<std::string>& languages,
                    const std::string& tier_now, Settings& settings, bool& changed) {
     bool close = false;
-    if (begin_panel("settings", middle(), ImVec2(0.5f, 0.5f), ImVec2(640.0f * gui.unit(), 0.0f), 0.94f)) {
+    if (begin_panel("settings", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(640.0f * gui.unit(), 0.0f), 0.94f)) {
         heading(gui, text("settings.title"));
         changed |= choose_language(gui, text, languages, settings);
         changed |= choose_tier(gui, text, tier_now, settings);
@@ -243,22 +154,37 @@ bool draw_settings(const Gui& gui, const Language& text, const std::vector<std::
 
 DebriefChoice draw_debrief(const Gui& gui, const Language& text, const viewer::Debrief& debrief) {
     DebriefChoice choice = DebriefChoice::none;
-    if (begin_panel("debrief", middle(), ImVec2(0.5f, 0.5f), ImVec2(620.0f * gui.unit(), 0.0f), 0.92f)) {
+    const float u = gui.unit(), row = 52.0f * u, spacing = ImGui::GetStyle().ItemSpacing.y;
+    const bool rewind = !debrief.past.recording.empty();
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float width = std::min(640.0f * u, screen.x - 24.0f * u);
+    if (begin_panel("debrief", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(width, 0.0f), 0.92f)) {
         heading(gui, text(debrief.title.empty() ? "debrief.title" : debrief.title));
-        for (const viewer::HudLine& line : debrief.lines) {
-            ImGui::TextColored(colour::kFaint, "%s", text(line.name).c_str());
-            const std::string& value = text(line.value);
-            ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(value.c_str()).x -
-                            ImGui::GetStyle().WindowPadding.x);
-            const ImVec4 tint = line.mood == viewer::HudLine::Mood::good  ? colour::kGood
-                                : line.mood == viewer::HudLine::Mood::bad ? colour::kBad
-                                                                          : colour::kText;
-            ImGui::TextColored(tint, "%s", value.c_str());
+        const float line = ImGui::GetTextLineHeightWithSpacing();
+        const float below = (rewind ? 3.0f : 2.0f) * (row + spacing) + ImGui::GetCursorPosY() + 60.0f * u;
+        const float lines = std::min(line * static_cast<float>(debrief.lines.size()) + 4.0f * u, screen.y - below);
+        if (!debrief.lines.empty()) {
+            ImGui::BeginChild("lines", ImVec2(0.0f, std::max(3.0f * line, lines)));
+            for (const viewer::HudLine& each : debrief.lines)
+                name_and_value(text(each.name), text(each.value),
+                               each.mood == viewer::HudLine::Mood::good  ? colour::kGood
+                               : each.mood == viewer::HudLine::Mood::bad ? colour::kBad
+                                                                         : colour::kText);
+            ImGui::EndChild();
         }
-        ImGui::Dummy(ImVec2(1.0f, 8.0f * gui.unit()));
-        if (!debrief.report.empty() && wide_button(gui, text("debrief.report"))) choice = DebriefChoice::report;
-        if (wide_button(gui, text("debrief.again"))) choice = DebriefChoice::again;
-        if (wide_button(gui, text("debrief.menu"))) choice = DebriefChoice::menu;
+        ImGui::Dummy(ImVec2(1.0f, 4.0f * u));
+        if (rewind && main_button(gui, text("debrief.rewind"), ImVec2(-1.0f, row))) choice = DebriefChoice::rewind;
+        const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+        int placed = 0;
+        const auto button = [&](bool there, const char* key, DebriefChoice what) {
+            if (!there) return;
+            if (placed++ % 2 == 1) ImGui::SameLine();
+            if (ImGui::Button(text(key).c_str(), ImVec2(half, row))) choice = what;
+        };
+        button(!debrief.questionnaire.statements.empty(), "debrief.questions", DebriefChoice::questions);
+        button(!debrief.report.empty(), "debrief.report", DebriefChoice::report);
+        button(true, "debrief.again", DebriefChoice::again);
+        button(true, "debrief.menu", DebriefChoice::menu);
     }
     ImGui::End();
     return choice;
@@ -266,7 +192,7 @@ DebriefChoice draw_debrief(const Gui& gui, const Language& text, const viewer::D
 
 bool draw_trouble(const Gui& gui, const Language& text, const std::string& message) {
     bool close = false;
-    if (begin_panel("trouble", middle(), ImVec2(0.5f, 0.5f), ImVec2(720.0f * gui.unit(), 0.0f), 0.95f)) {
+    if (begin_panel("trouble", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(720.0f * gui.unit(), 0.0f), 0.95f)) {
         heading(gui, text("trouble.title"));
         ImGui::PushTextWrapPos(0.0f);
         ImGui::TextUnformatted(message.c_str());

@@ -1,6 +1,5 @@
 #pragma once
-// Everything that is not the operation itself: start, loading, pause, settings, debrief, trouble. Each draws itself and
-// says what was chosen.
+// Screens without much to them: loading, pause, settings, debrief, trouble. Each draws itself and says what was chosen.
 
 #include <optional>
 #include <string>
@@ -14,24 +13,19 @@
 
 namespace calot::window {
 
-struct StartChoice {
-    int exercise = -1;  ///< index, chosen
-    bool settings = false, quit = false;
-};
-/// `patient`: index into viewer::patients(), may be changed; -1: the seed in `seed`. `patients`: offer them.
-StartChoice draw_start(const Gui& gui, const viewer::Language& text, const std::vector<viewer::Exercise>& exercises,
-                       int& patient, int& seed, bool patients);
+/// `title`: a key of the language file.
+void draw_loading(const Gui& gui, const viewer::Language& text, const char* title, viewer::Loader::Step step,
+                  double waited_s);
 
-void draw_loading(const Gui& gui, const viewer::Language& text, viewer::Loader::Step step, double waited_s);
-
-enum class PauseChoice { none, resume, reset, settings, help, finish, quit };
-PauseChoice draw_pause(const Gui& gui, const viewer::Language& text);
+enum class PauseChoice { none, resume, rewind, reset, settings, help, finish, quit };
+/// `rewind`: there will be something to rewind.
+PauseChoice draw_pause(const Gui& gui, const viewer::Language& text, bool rewind);
 
 /// True when it is to be closed. `changed` tells that something was changed.
 bool draw_settings(const Gui& gui, const viewer::Language& text, const std::vector<std::string>& languages,
                    const std::string& tier_now, Settings& settings, bool& changed);
 
-enum class DebriefChoice { none, again, menu, report };
+enum class DebriefChoice { none, rewind, questions, again, menu, report };
 DebriefChoice draw_debrief(const Gui& gui, const viewer::Language& text, const viewer::Debrief& debrief);
 
 /// True when it is to be closed.

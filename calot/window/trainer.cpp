@@ -1,9 +1,8 @@
-#include "calot/window/trainer.h"
+#include "calot/window/trainer_window.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <optional>
+#include <tuple>
 #include <utility>
 
 #include <epoxy/gl.h>
@@ -11,88 +10,19 @@
 
 #include "calot/base/error.h"
 #include "calot/viewer/data_files.h"
-#include "calot/viewer/language.h"
-#include "calot/viewer/lens.h"
-#include "calot/viewer/loader.h"
-#include "calot/window/glfw_window.h"
-#include "calot/window/gui.h"
-#include "calot/window/hud.h"
-#include "calot/window/open_page.h"
-#include "calot/window/picture_thread.h"
-#include "calot/window/screens.h"
-#include "calot/window/settings.h"
-#include "calot/window/sound.h"
 
 namespace calot::window {
 
-namespace {
-
 using viewer::steady_s;
+
+namespace {
 
 constexpr double kIdleFrame_s = 1.0 / 30.0;  ///< the window is drawn at least so often
 constexpr double kTurn_s = 2e-3;             ///< the devices are read at least so often
-constexpr double kFullSizzle_kg_per_s = 2.0e-5;
+constexpr double kAhead_s = 0.3;             ///< the timeline may be before the picture while it plays
+constexpr double kReady_s = 3.0;             ///< to find the hands again after a rewind
 
-enum class Screen { start, loading, practice, paused, debrief, trouble };
-
-class Trainer {
-  public:
-    explicit Trainer(const TrainerOptions& options);
-    void run();
-
-  private:
-    void turn();
-    void draw_window();
-    void obey_commands();
-    void load(int exercise);
-    void finish_loading();
-    void practise(double dt_s);
-    void begin_practice();
-    void end_session();
-    void ask_for_picture();
-    void draw_picture(int width, int height);
-    void play_sound();
-    void draw_screens();
-    void draw_practice();
-    void handle(PauseChoice choice);
-    void handle(DebriefChoice choice);
-    void apply_settings();
-    void take_picture(int width, int height);
-    bool has_pause() const { return screen_ == Screen::practice || screen_ == Screen::paused; }
-    PictureFigures figures() const;
-
-    TrainerOptions options_;
-    std::string data_;
-    std::string settings_path_;
-    Settings settings_;
-    viewer::Language text_;
-    std::vector<std::string> languages_;
-    GlfwWindow window_;
-    Gui gui_;
-    PictureThread pictures_;
-    Sound sound_;
-
-    Screen screen_ = Screen::start;
-    bool help_ = false, settings_open_ = false, quit_ = false, settings_changed_ = false, picture_wanted_ = false;
-    int exercise_ = 0, patient_ = 0, seed_ = 1, pictures_taken_ = 0;
-    std::string trouble_;
-    std::unique_ptr<viewer::Loader> loader_;
-    double loading_since_s_ = 0.0;
-    viewer::Loader::Step loading_step_ = viewer::Loader::Step::scene;
-    std::shared_ptr<viewer::Attempt> attempt_;
-    std::unique_ptr<viewer::Session> session_;
-    std::optional<viewer::Mapping> mapping_;
-    std::optional<viewer::Scope> scope_;
-    viewer::LensState lens_;
-    PictureWish wished_;
-    viewer::Debrief debrief_;
-
-    double now_s_ = steady_s(), last_s_ = now_s_, drawn_s_ = 0.0;
-    viewer::RateMeter picture_rate_;
-    double latency_s_ = 0.0;
-    std::int64_t answered_ = 0;
-    bool focused_ = true;
-};
+}  // namespace
 
 Trainer::Trainer(const TrainerOptions& options)
     : options_(options),
@@ -114,6 +44,7 @@ Trainer::Trainer(const TrainerOptions& options)
     if (options_.start.empty()) return;
     for (std::size_t k = 0; k < options_.exercises.size(); ++k)
         if (options_.exercises[k].id == options_.start) {
+            selection_.exercise = static_cast<int>(k);
             load(static_cast<int>(k));
             return;
         }
@@ -133,6 +64,7 @@ void Trainer::run() {
         turn();
     }
     end_session();
+    close_rewind();
     if (settings_changed_) save_settings(settings_path_, settings_);
 }
 
@@ -142,6 +74,7 @@ void Trainer::turn() {
     obey_commands();
     if (loader_ && loader_->finished()) finish_loading();
     if (has_pause()) practise(dt_s);
+    if (replay_) rewind(dt_s);
     play_sound();
     window_.capture_mouse(screen_ == Screen::practice && !help_);
     ask_for_picture();
@@ -149,6 +82,7 @@ void Trainer::turn() {
     if (screen_ == Screen::loading && !loader_ && fresh) begin_practice();
     if (const std::string trouble = pictures_.take_trouble(); !trouble.empty()) {
         end_session();
+        close_rewind();
         trouble_ = trouble;
         screen_ = Screen::trouble;
     }
@@ -175,10 +109,11 @@ void Trainer::draw_window() {
     glViewport(0, 0, width, height);
     glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT);
-    gui_.begin_frame(!window_.captured());
+    gui_.begin_frame(!window_.captured(), screen_ != Screen::rewind);
     draw_picture(width, height);
     draw_screens();
     gui_.end_frame();
+    window_.type(ImGui::GetIO().WantTextInput);
     if (std::exchange(picture_wanted_, false)) take_picture(width, height);
     window_.swap();
 }
@@ -194,6 +129,10 @@ void Trainer::obey_commands() {
             settings_open_ = false;
         else if (has_pause())
             screen_ = screen_ == Screen::practice ? Screen::paused : Screen::practice;
+        else if (screen_ == Screen::rewind)
+            handle(RewindChoice::back);
+        else if (screen_ == Screen::questions)
+            screen_ = Screen::debrief;
     }
     if (window_.take(Command::help)) help_ = !help_;
     if (window_.take(Command::pace)) settings_.show_pace = !settings_.show_pace, settings_changed_ = true;
@@ -216,6 +155,8 @@ void Trainer::obey_commands() {
 
 void Trainer::load(int exercise) {
     end_session();
+    close_rewind();
+    resumed_ = false;
     exercise_ = exercise;
     const viewer::Exercise& chosen = options_.exercises[static_cast<std::size_t>(exercise)];
     SceneWish wish;
@@ -223,9 +164,10 @@ void Trainer::load(int exercise) {
     wish.assignments = chosen.assignments;
     wish.any_patient = options_.patients && chosen.patients;
     if (wish.any_patient) {
-        wish.seed = static_cast<std::uint64_t>(seed_);
-        if (patient_ >= 0) {
-            const viewer::Patient& patient = viewer::patients()[static_cast<std::size_t>(patient_)];
+        const std::vector<viewer::Patient>& patients = viewer::patients_of(chosen);
+        wish.seed = static_cast<std::uint64_t>(selection_.seed);
+        if (selection_.patient >= 0 && selection_.patient < static_cast<int>(patients.size())) {
+            const viewer::Patient& patient = patients[static_cast<std::size_t>(selection_.patient)];
             wish.seed = patient.seed;
             wish.assignments.insert(wish.assignments.end(), patient.assignments.begin(), patient.assignments.end());
         }
@@ -245,6 +187,7 @@ void Trainer::load(int exercise) {
 void Trainer::finish_loading() {
     try {
         session_ = loader_->take();
+        if (loader_->setup()) setup_ = loader_->setup();
     } catch (const InputError& error) {
         trouble_ = error.describe();
     } catch (const std::exception& error) {
@@ -257,32 +200,33 @@ void Trainer::finish_loading() {
     }
     mapping_.emplace(session_->theatre());
     mapping_->sensitivity() = settings_.hands;
-    scope_.emplace(session_->setup().camera);
+    if (!resumed_) scope_.emplace(session_->setup().camera);
     lens_ = {};
     answered_ = 0;
-    if (options_.make_device) session_->hold(options_.make_device(session_->setup()));
+    if (options_.make_device) session_->hold(device_ = options_.make_device(session_->setup()));
     loading_step_ = viewer::Loader::Step::picture;
     loading_since_s_ = now_s_;
     // The first picture makes the shaders, which may take a while: the loading screen stays until it is there.
-    pictures_.show(session_.get());
+    pictures_.show(&session_->snapshots());
     pictures_.update();  // one of the session before
 }
 
 void Trainer::begin_practice() {
     session_->start();
     screen_ = Screen::practice;
+    hands_free_s_ = resumed_ ? now_s_ + kReady_s : 0.0;
 }
 
 void Trainer::practise(double dt_s) {
     viewer::Devices devices = window_.take_devices();
     devices.grasp_toggled = window_.take(Command::grasp);
-    if (screen_ != Screen::practice || help_) devices = {};
+    if (screen_ != Screen::practice || help_ || counting_down()) devices = {};
     mapping_->apply(devices, dt_s, *scope_);
     viewer::Controls& controls = mapping_->controls();
     controls.cut_W = settings_.cut_W;
     controls.coag_W = settings_.coag_W;
     controls.blended_cut = settings_.blended_cut;
-    controls.paused = screen_ == Screen::paused || help_;
+    controls.paused = screen_ == Screen::paused || help_ || counting_down();
     controls.sampled_s = now_s_;
     session_->set(controls);
     if (!controls.paused) lens_.advance(pictures_.picture().figures, scope_->tip_m(), dt_s);
@@ -296,11 +240,12 @@ void Trainer::end_session() {
     screen_ = Screen::start;
     if (attempt_) {
         debrief_ = attempt_->debrief();
+        answers_ = {};
         screen_ = Screen::debrief;
     }
     attempt_.reset();
     mapping_.reset();
-    scope_.reset();
+    device_.reset();
     session_.reset();
 }
 
@@ -318,128 +263,76 @@ void Trainer::ask_for_picture() {
 
 void Trainer::draw_picture(int width, int height) {
     const Picture& picture = pictures_.picture();
-    if (!session_ || screen_ == Screen::loading || picture.texture == 0) return;
+    const bool behind = screen_ == Screen::start || screen_ == Screen::loading || screen_ == Screen::trouble;
+    if (behind || !scope_ || picture.texture == 0) return;
     ImGui::GetBackgroundDrawList()->AddImage(
         reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), ImVec2(0.0f, 0.0f),
         ImVec2(static_cast<float>(width), static_cast<float>(height)), ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
 }
 
-void Trainer::play_sound() {
-    viewer::SoundScene scene;
-    scene.volume = settings_.muted || screen_ != Screen::practice || help_ ? 0.0 : settings_.volume;
-    const viewer::Figures& figures = pictures_.picture().figures;
-    const bool active = screen_ == Screen::practice && figures.input.pedal;
-    scene.coagulating = active && figures.input.mode == tissue::GeneratorMode::coag;
-    scene.cutting = active && !scene.coagulating;
-    scene.sizzle = std::sqrt(std::max(0.0, figures.boiling_kg_per_s / kFullSizzle_kg_per_s));
-    scene.suction = figures.fluids.suction;
-    scene.irrigation = figures.fluids.irrigation;
-    sound_.set(scene);
+void Trainer::open_rewind(const viewer::Past& past, Screen back, double from_end_s) {
+    past_ = past;
+    rewind_back_ = back;
+    rewind_from_end_s_ = from_end_s;
+    loading_since_s_ = now_s_;
+    replay_ = std::make_unique<viewer::Replay>(past.recording, setup_);
+    screen_ = Screen::opening;
 }
 
-void Trainer::draw_screens() {
-    if (help_ && screen_ != Screen::loading) {
-        draw_help(gui_, text_);
+void Trainer::close_rewind() {
+    if (!replay_) return;
+    pictures_.show(nullptr);
+    replay_.reset();
+}
+
+/// The replay follows the timeline, as far as it can.
+void Trainer::rewind(double dt_s) {
+    if (const std::string trouble = replay_->trouble(); !trouble.empty()) {
+        close_rewind();
+        trouble_ = trouble;
+        screen_ = Screen::trouble;
         return;
     }
-    bool changed = false;
-    switch (screen_) {
-        case Screen::start: {
-            if (settings_open_) break;
-            const StartChoice choice = draw_start(gui_, text_, options_.exercises, patient_, seed_, options_.patients);
-            if (choice.quit) quit_ = true;
-            if (choice.settings) settings_open_ = true;
-            if (choice.exercise >= 0) load(choice.exercise);
-            break;
-        }
-        case Screen::loading:
-            if (loader_ && loader_->step() != loading_step_) {
-                loading_step_ = loader_->step();
-                loading_since_s_ = now_s_;
-            }
-            draw_loading(gui_, text_, loading_step_, now_s_ - loading_since_s_);
-            break;
-        case Screen::practice:
-            draw_practice();
-            break;
-        case Screen::paused:
-            draw_practice();
-            if (!settings_open_ && !help_) handle(draw_pause(gui_, text_));
-            break;
-        case Screen::debrief:
-            handle(draw_debrief(gui_, text_, debrief_));
-            break;
-        case Screen::trouble:
-            if (draw_trouble(gui_, text_, trouble_)) screen_ = Screen::start;
-            break;
+    if (!replay_->ready()) return;
+    const double tick_s = replay_->setup()->model.tick_s;
+    const double duration_s = static_cast<double>(replay_->ticks()) * tick_s;
+    if (screen_ == Screen::opening) {
+        screen_ = Screen::rewind;
+        setup_ = replay_->setup();
+        if (!scope_) scope_.emplace(setup_->camera);
+        rewind_ = {std::max(0.0, duration_s - rewind_from_end_s_), false};
+        lens_ = {};
+        pictures_.show(&replay_->snapshots());
+        for (const Command key : {Command::play, Command::earlier, Command::later, Command::first, Command::last,
+                                  Command::enter})
+            window_.take(key);  // from before
     }
-    if (settings_open_ && screen_ != Screen::practice &&
-        draw_settings(gui_, text_, languages_, text_("tier." + std::to_string(pictures_.picture().tier)), settings_,
-                      changed))
-        settings_open_ = false;
-    if (changed) {
-        settings_changed_ = true;
-        apply_settings();
-    }
+    if (rewind_.playing)  // no further ahead of the picture than the eye forgives
+        rewind_.at_s = std::min({rewind_.at_s + dt_s, static_cast<double>(replay_->shown()) * tick_s + kAhead_s,
+                                 duration_s});
+    replay_->wish(std::llround(rewind_.at_s / tick_s));
 }
 
-PictureFigures Trainer::figures() const {
-    PictureFigures figures;
-    figures.pictures_per_s = picture_rate_.per_s();
-    figures.draw_ms = 1e3 * pictures_.picture().draw_s;
-    figures.latency_ms = 1e3 * latency_s_;
-    figures.tier = text_("tier." + std::to_string(pictures_.picture().tier));
-    figures.scheduling = session_->scheduling();
-    return figures;
-}
-
-void Trainer::draw_practice() {
-    std::vector<viewer::HudLine> lines;
-    if (attempt_) lines = attempt_->hud();
-    const viewer::Controls& controls = mapping_->controls();
-    draw_hud(gui_, text_,
-             {pictures_.picture().figures, figures(), settings_,
-              options_.exercises[static_cast<std::size_t>(exercise_)].name, lines, mapping_->left_active(),
-              controls.suction, controls.irrigation});
-}
-
-void Trainer::handle(PauseChoice choice) {
-    switch (choice) {
-        case PauseChoice::none:
-            break;
-        case PauseChoice::resume:
-            screen_ = Screen::practice;
-            break;
-        case PauseChoice::reset:
-            load(exercise_);
-            break;
-        case PauseChoice::settings:
-            settings_open_ = true;
-            break;
-        case PauseChoice::help:
-            help_ = true;
-            break;
-        case PauseChoice::finish:
-            end_session();
-            break;
-        case PauseChoice::quit:
-            quit_ = true;
-            break;
-    }
-}
-
-void Trainer::handle(DebriefChoice choice) {
-    if (choice == DebriefChoice::again) load(exercise_);
-    if (choice == DebriefChoice::menu) screen_ = Screen::start;
-    if (choice == DebriefChoice::report) open_page(debrief_.report);
+/// Goes on from the moment on the timeline, as a new session.
+void Trainer::take_over() {
+    const std::int64_t tick = std::clamp<std::int64_t>(std::llround(rewind_.at_s / setup_->model.tick_s), 0, replay_->ticks());
+    close_rewind();
+    resumed_ = true;
+    loader_ = std::make_unique<viewer::Loader>([this, resume = past_.resume, tick, setup = setup_] {
+        viewer::Loader::Start start;
+        std::tie(start.run, attempt_) = resume(tick, setup);
+        start.observers = {attempt_};
+        return start;
+    });
+    loading_since_s_ = now_s_;
+    loading_step_ = viewer::Loader::Step::tissue;
+    screen_ = Screen::loading;
 }
 
 void Trainer::take_picture(int width, int height) {
     const std::string file = fmt::format("{}/calot-{:03d}.png", options_.pictures, ++pictures_taken_);
     render::write_png(file, read_window(width, height));
 }
-
-}  // namespace
 
 void run_trainer(const TrainerOptions& options) {
     Trainer(options).run();

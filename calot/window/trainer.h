@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct TrainerOptions {
     /// Called in a thread; throws InputError.
     std::function<scene::Scene(const SceneWish&)> make_scene;
     std::vector<viewer::Exercise> exercises;
+    std::optional<viewer::CutOff> cut_off;  ///< offered at the start
     /// A haptic device for a session's right hand; empty: none. Throws InputError.
     std::function<std::shared_ptr<haptics::Session>(const simulation::Setup&)> make_device;
     std::string start;           ///< id of an exercise to start at once; empty: the start screen

@@ -35,6 +35,9 @@ class RecordingFile : public ::testing::Test {
             input.pedal = k % 3 == 0;
             input.mode = tissue::GeneratorMode::blend;
             input.power_setting_W = k;
+            input.wipe_tip = k % 5 == 0;
+            input.suction = k % 7 == 0;
+            input.irrigation = k % 11 == 0;
             input.grasper = {k % 2 == 0, {Vec3(-k, 0.5 * k, 7.0), Quat(0.5, 0.5, 0.5, -0.5)}, 1.0 / (k + 1)};
             ++state.tick;
             writer.add(input, state);
@@ -62,6 +65,11 @@ TEST_F(RecordingFile, ReadsBackWhatWasWritten) {
     EXPECT_FALSE(recording.inputs[79].pedal);
     EXPECT_EQ(recording.inputs[79].mode, tissue::GeneratorMode::blend);
     EXPECT_EQ(recording.inputs[79].power_setting_W, 79.0);
+    for (const int k : {0, 5, 77, 1001}) {
+        EXPECT_EQ(recording.inputs[k].wipe_tip, k % 5 == 0) << k;
+        EXPECT_EQ(recording.inputs[k].suction, k % 7 == 0) << k;
+        EXPECT_EQ(recording.inputs[k].irrigation, k % 11 == 0) << k;
+    }
     EXPECT_FALSE(recording.inputs[77].grasper.present);
     EXPECT_TRUE(recording.inputs[78].grasper.present);
     EXPECT_EQ(recording.inputs[78].grasper.pose.position_m, Vec3(-78, 39, 7));

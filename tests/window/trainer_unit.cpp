@@ -10,6 +10,7 @@
 #include <stb/stb_image.h>
 
 #include "apps/program.h"
+#include "calot/training/store.h"
 #include "window/display.h"
 
 namespace calot::window::test {
@@ -158,23 +159,21 @@ TEST_F(Trainer, start_practice_burn_pause_and_quit) {
     const Shot start = person.look();
     ASSERT_EQ(start.width(), kWidth);
     ASSERT_EQ(start.height(), kHeight);
-    // A heading and buttons on the left, nothing yet on the right.
-    EXPECT_GT(start.share_brighter(0.6, 40, 20, 400, 300), 0.004);
-    EXPECT_LT(start.mean(kWidth - 200, 100, kWidth - 20, kHeight - 100).luma(), 0.05);
+    // A heading and exercises on the left; on the right what is chosen, and the button that starts it.
+    EXPECT_GT(start.share_brighter(0.6, 20, 20, 340, 300), 0.004);
+    const Colour button = start.mean(420, 570, 560, 600);
+    EXPECT_GT(button.r, 0.6);
+    EXPECT_LT(button.b, 0.3);
 
-    person.click(300, 180);  // free practice, the first of the list
+    person.click(655, 585);
     ASSERT_TRUE(Person::wait([&] { return shows_tissue(person.look()); }));
     Person::pause(600);
     const Shot practice = person.look();
     EXPECT_GT(practice.share_brighter(0.6, 16, kHeight - 250, 316, kHeight - 16), 0.004);  // the generator's figures
     EXPECT_GT(practice.share_brighter(0.4, kWidth - 290, 16, kWidth - 16, 110), 0.004);    // the exercise's
 
-    // The hook follows the mouse.
-    // The first event after the window took the mouse only says where the mouse is.
-    for (int event = 0; event < 4; ++event) {
-        run_tool({"xdotool", "mousemove_relative", "--", "-30", "20"});
-        Person::pause(40);
-    }
+    // The hook follows the mouse, from its first movement on.
+    run_tool({"xdotool", "mousemove_relative", "--", "-120", "80"});
     EXPECT_TRUE(
         Person::wait([&] { return person.look().changed(practice, 330, 100, kWidth - 100, kHeight - 60) > 0.004; }));
 
@@ -193,10 +192,87 @@ TEST_F(Trainer, start_practice_burn_pause_and_quit) {
         return paused.mean(kWidth / 2 - 200, kHeight / 2 - 150, kWidth / 2 + 200, kHeight / 2 + 150).luma() < 0.25 &&
                paused.changed(practice, kWidth / 2 - 200, kHeight / 2 - 150, kWidth / 2 + 200, kHeight / 2 + 150) > 0.5;
     }));
-    person.click(kWidth / 2, kHeight / 2 + 180);  // the last button: quit
+    person.click(kWidth / 2, kHeight / 2 + 207);  // the last button: quit
     const auto outcome = person.ended();
     EXPECT_EQ(outcome.code, 0) << outcome.output;
     EXPECT_EQ(outcome.output, "");
+}
+
+/// Share of a box that has the yellow pedal's colour.
+double yellow(const Shot& shot, int x0, int y0, int x1, int y1) {
+    int count = 0;
+    for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) {
+            const Colour c = shot.at(x, y);
+            count += c.r > 0.9 && c.g > 0.7 && c.b < 0.35;
+        }
+    return static_cast<double>(count) / ((x1 - x0) * (y1 - y0));
+}
+
+TEST_F(Trainer, a_session_is_answered_for_looked_at_again_and_gone_on_from) {
+    const Folder folder("trainer_rewind");
+    Person person(folder, {"--start", "free"});
+    ASSERT_TRUE(person.window_opened());
+    ASSERT_TRUE(Person::wait([&] { return shows_tissue(person.look()); }));
+    Person::pause(1500);  // a second before the pedal goes down: a checkpoint lies before it
+    run_tool({"xdotool", "mousedown", "1"});
+    Person::pause(1200);
+    run_tool({"xdotool", "mouseup", "1"});
+    Person::pause(800);
+    person.key("Escape");
+    const auto paused = [&] {
+        return person.look().mean(kWidth / 2 - 200, kHeight / 2 - 150, kWidth / 2 + 200, kHeight / 2 + 150).luma() <
+               0.25;
+    };
+    ASSERT_TRUE(Person::wait(paused));
+    person.click(kWidth / 2, kHeight / 2 + 147);  // end the exercise
+    const auto debriefed = [&] {                  // the button that leads back into the session
+        const Colour button = person.look().mean(200, 275, 320, 310);
+        return button.r > 0.6 && button.b < 0.3;
+    };
+    ASSERT_TRUE(Person::wait(debriefed));
+
+    person.click(325, 353);  // twelve questions
+    ASSERT_TRUE(Person::wait([&] { return person.look().mean(80, 570, 400, 600).r > 0.6; }));
+    person.click(751, 152);  // the first: 3
+    Person::pause(400);
+    person.click(252, 585);  // store
+    ASSERT_TRUE(Person::wait(debriefed));
+    training::Store store(folder / "sessions");
+    ASSERT_FALSE(store.session(1).answers.empty());
+    EXPECT_EQ(store.session(1).answers.front(), 3);
+    EXPECT_EQ(store.session(1).answers.back(), std::nullopt);
+
+    person.click(480, 293);  // look again: the timeline has the pedal's yellow
+    const auto timeline = [](const Shot& shot) { return yellow(shot, 30, 514, kWidth - 30, 526); };
+    ASSERT_TRUE(Person::wait([&] { return timeline(person.look()) > 0.05; }));
+    person.key("Home");
+    const Shot first = person.look();
+    person.click(kWidth - 60, 520);  // near its end: the picture is another
+    EXPECT_TRUE(Person::wait([&] { return person.look().changed(first, 30, 510, kWidth - 30, 545) > 0.002; }));
+    person.click(kWidth / 2, 520);
+    Person::pause(300);
+    person.key("Return");  // on from the middle
+    ASSERT_TRUE(Person::wait([&] {
+        const std::vector<training::SessionRow> rows = store.sessions();
+        return rows.size() == 2 && rows.back().parent == 1;
+    }));
+    EXPECT_NEAR(static_cast<double>(store.session(2).parent_tick) * 1e-3, 0.5 * store.session(1).duration_s, 0.3);
+    // After a countdown it runs, and the pedal works.
+    Person::pause(4000);
+    run_tool({"xdotool", "mousedown", "1"});
+    EXPECT_TRUE(Person::wait([&] {
+        const Colour lit = person.look().mean(40, kHeight - 254, 150, kHeight - 224);
+        return lit.r > 0.7 && lit.g > 0.5 && lit.b < 0.45;
+    }));
+    run_tool({"xdotool", "mouseup", "1"});
+    person.key("Escape");
+    ASSERT_TRUE(Person::wait(paused));
+    person.click(kWidth / 2, kHeight / 2 + 207);  // quit
+    const auto outcome = person.ended();
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    EXPECT_EQ(store.session(2).status, training::SessionStatus::finished);
+    EXPECT_GT(store.session(2).duration_s, static_cast<double>(store.session(2).parent_tick) * 1e-3);
 }
 
 TEST_F(Trainer, help_covers_and_goes_away_in_another_language) {

@@ -1,4 +1,4 @@
-#include "calot/viewer/triple_buffer.h"
+#include "calot/base/triple_buffer.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-namespace calot::viewer {
+namespace calot {
 namespace {
 
 TEST(TripleBuffer, gives_the_newest_value_once) {
@@ -23,6 +23,18 @@ TEST(TripleBuffer, gives_the_newest_value_once) {
     EXPECT_EQ(buffer.front(), 2);
     buffer.back() = 3;
     EXPECT_FALSE(buffer.update());  // not before it is published
+}
+
+TEST(TripleBuffer, puts_and_takes_copies) {
+    TripleBuffer<int> buffer;
+    int value = -1;
+    EXPECT_FALSE(buffer.take(value));
+    buffer.put(1);
+    buffer.put(2);
+    EXPECT_TRUE(buffer.take(value));
+    EXPECT_EQ(value, 2);
+    EXPECT_FALSE(buffer.take(value));
+    EXPECT_EQ(value, 2);
 }
 
 TEST(TripleBuffer, reader_never_sees_a_half_written_value) {
@@ -55,4 +67,4 @@ TEST(TripleBuffer, reader_never_sees_a_half_written_value) {
 }
 
 }  // namespace
-}  // namespace calot::viewer
+}  // namespace calot

@@ -1,5 +1,5 @@
 #pragma once
-// Plain values to bytes and back, little-endian as they lie in memory: what an observer carries in a checkpoint.
+// Plain values to bytes and back, little-endian as they lie in memory: what goes into a checkpoint besides the state.
 
 #include <cstdint>
 #include <cstring>
@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace calot::training {
+namespace calot {
 
 /// The same code writes and reads: `archive.value(x)` appends x, or sets it. Reading past the end throws.
 class Archive {
@@ -54,7 +54,7 @@ class Archive {
             return;
         }
         if (count > bytes_.size() - at_) throw std::runtime_error("damaged archive");
-        std::memcpy(data, bytes_.data() + at_, count);
+        bytes_.copy(static_cast<char*>(data), count, at_);
         at_ += count;
     }
 
@@ -63,4 +63,4 @@ class Archive {
     bool reading_ = false;
 };
 
-}  // namespace calot::training
+}  // namespace calot

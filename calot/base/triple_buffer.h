@@ -1,12 +1,14 @@
 #pragma once
 // Hands the newest value from one thread to another. Neither ever waits: the writer always has a slot to write, the
 // reader keeps what it reads for as long as it likes, values that nobody took in time are skipped.
+//
+//     writer: fill back(), publish()         reader: if (update()) look at front()
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 
-namespace calot::viewer {
+namespace calot {
 
 template <class T>
 class TripleBuffer {
@@ -26,15 +28,28 @@ class TripleBuffer {
     T& front() { return slot_[front_]; }
     const T& front() const { return slot_[front_]; }
 
+    /// The same by copy: from the writing thread ...
+    void put(const T& value) {
+        back() = value;
+        publish();
+    }
+    /// ... and from the reading one: true, and the value, when there is one that was not taken yet.
+    bool take(T& value) {
+        if (!update()) return false;
+        value = front();
+        return true;
+    }
+
     /// Whether a value waits that the reader has not taken; any thread.
     bool waiting() const { return (middle_.load(std::memory_order_relaxed) & kFresh) != 0; }
 
   private:
     static constexpr std::uint32_t kIndex = 3, kFresh = 4;
+    // Cache lines of their own, so that one thread's stores do not slow the other's loads.
     std::array<T, 3> slot_{};
-    std::uint32_t back_ = 0;                ///< the writer's
-    std::uint32_t front_ = 1;               ///< the reader's
-    std::atomic<std::uint32_t> middle_{2};  ///< between them; kFresh when the reader has not seen it
+    alignas(64) std::uint32_t back_ = 0;                ///< the writer's
+    alignas(64) std::uint32_t front_ = 1;               ///< the reader's
+    alignas(64) std::atomic<std::uint32_t> middle_{2};  ///< between them; kFresh when the reader has not seen it
 };
 
-}  // namespace calot::viewer
+}  // namespace calot
