@@ -42,7 +42,7 @@ TEST(Motion, KeepsMomentum) {
     for (const double severed : {0.0, 0.3}) {
         Body body = free_body({5, 4, 6});
         wound(body, 0.2, severed, 6);
-        shake(body, 0.03, 0.8, 6);
+        shake(body, 0.02, 0.4, 6);  // no stretch that raises masses
         const Momentum before = momentum(body);
         ASSERT_EQ(before.scale, 0.0);
         for (int k = 0; k < 300; ++k) body.tick();
