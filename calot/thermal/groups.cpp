@@ -1,5 +1,6 @@
 #include "calot/thermal/groups.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace calot::thermal {
@@ -31,13 +32,12 @@ GroupKind find_material(const tissue::Model& model, std::int64_t first, tissue::
 
 /// 1 / (|nx| + |ny| + |nz|) of a hexel's surface; 1 where the tissue around it balances.
 double share_of(const Lattice& lattice, const BitArray& present, std::int64_t cell) {
-    constexpr double kWeight[4] = {0.0, 1.0, 0.35, 0.2};  // by the number of axes along which a neighbour lies
     Vec3 inward(0.0);
     for (int z = -1; z <= 1; ++z)
         for (int y = -1; y <= 1; ++y)
             for (int x = -1; x <= 1; ++x)
                 if (present.test(cell + lattice.offset({x, y, z})))
-                    inward += kWeight[x * x + y * y + z * z] * Vec3(x, y, z);
+                    inward += Vec3(x, y, z) / std::max(1.0, static_cast<double>(x * x + y * y + z * z));
     const double sum = std::abs(inward.x) + std::abs(inward.y) + std::abs(inward.z);
     return sum > 1e-9 ? glm::length(inward) / sum : 1.0;
 }

@@ -19,7 +19,6 @@ const std::map<std::string, double> kShort{
     {"cantilever", 0.06},
     {"torsion of a square bar", 0.075},
     {"indentation by a rigid ball", 0.1},
-    {"sphere with surface exchange", 0.14},
 };
 
 const std::string kScenes = CALOT_SOURCE_DIR "/scenes/validation";
