@@ -19,11 +19,10 @@ constexpr double kBreach_m3 = 1e-9;
 constexpr std::int64_t kTicksOfTouch = 500;
 /// Collagen and protein denature in seconds from here on.
 constexpr double kHotTip_K = 333.15;
-constexpr std::int64_t kTicksPerHeat = 8;
 constexpr std::int64_t kTicksPerOrganLook = 4;
 
 /// Bits of Meter's archive: another layout gets another number.
-constexpr std::uint32_t kArchiveVersion = 1;
+constexpr std::uint32_t kArchiveVersion = 2;
 
 Structure make_structure(const simulation::Simulation& run, const char* material) {
     return Structure(run.model(), tissue::find_material(run.model().materials, material), run.setup().camera.eye_m);
@@ -75,7 +74,7 @@ void Meter::after_tick(const simulation::Simulation& run, const tissue::Input& i
     if (tick % kTicksPerOrganLook == 0) watch_organs(run, input);
     watch_removal(run);
     watch_targets(input);
-    if (tick % kTicksPerHeat == 0) heat(run);
+    heat(run);
     if (tick % kTicksPerLook == 0) look(run, 0);
     if (tick % kTicksPerLook == kTicksPerLook / 2) look(run, 1);
     if (tick % kTicksPerPoint == 0) add_point(run);
@@ -83,6 +82,9 @@ void Meter::after_tick(const simulation::Simulation& run, const tissue::Input& i
 
 void Meter::move(const tissue::Input& input, std::int64_t tick) {
     hook_.after_tick(input.hook.position_m, tick);
+    if (!input.grasper.present) return;
+    grasper_used_ = true;
+    grasper_.after_tick(input.grasper.pose.position_m, tick);
 }
 
 void Meter::add_point(const simulation::Simulation& run) {
@@ -226,13 +228,12 @@ void Meter::look(const simulation::Simulation& run, std::size_t which) {
 }
 
 void Meter::heat(const simulation::Simulation& run) {
-    const tissue::JouleHeat& joule = run.work().exchange.joule;
-    if (run.state().generator.power_W <= 0.0) return;
+    const tissue::StrayCurrent& stray = run.state().stray;
     for (std::size_t which = 0; which < 2; ++which) {
-        double power_W = 0.0, most = 0.0;
-        structures_[which].heat(run.model(), joule, power_W, most);
-        sums_.heat_J[which] += power_W * static_cast<double>(kTicksPerHeat) * tick_s_;
-        sums_.most_A2_per_m4[which] = std::max(sums_.most_A2_per_m4[which], most);
+        const std::size_t material = structures_[which].material();
+        if (!structures_[which].exists() || material >= tissue::kStrayMaterials) continue;
+        sums_.heat_J[which] = stray.energy_J[material];
+        sums_.most_A_per_m2[which] = stray.highest_density_A_per_m2[material];
     }
 }
 
@@ -291,7 +292,7 @@ Metrics Meter::metrics(bool smoothness) const {
         m[name + "_exposed"] = state.exposed;
         m[name + "_freed"] = state.freed;
         m[name + "_energy_J"] = s.heat_J[which];
-        m[name + "_current_density_A_per_m2"] = std::sqrt(s.most_A2_per_m4[which]);
+        m[name + "_current_density_A_per_m2"] = s.most_A_per_m2[which];
         m[name + "_peak_K"] = state.peak_K;
         m[name + "_injured_m3"] = static_cast<double>(state.injured) * hexel_volume_m3_;
         m[name + "_burnt_m3"] = static_cast<double>(state.burnt) * hexel_volume_m3_;

@@ -96,7 +96,7 @@ class Meter {
         std::int64_t liver_injured = 0;
         double energy_J = 0.0, energy_at_start_J = 0.0, energy_at_point_J = 0.0, force_since_point_N = 0.0;
         double force_peak_N = 0.0, pull_peak_N = 0.0, liver_peak_K = 0.0;
-        std::array<double, 2> heat_J{}, most_A2_per_m4{};
+        std::array<double, 2> heat_J{}, most_A_per_m2{};
         std::array<std::int64_t, 2> burnt_at{-1, -1};
         std::array<std::int32_t, 2> exposure_steps{};
         std::array<std::int64_t, 2> touched_at{-1, -1};

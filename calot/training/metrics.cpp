@@ -76,7 +76,7 @@ const std::vector<Metric>& metric_table() {
          "integral of sigma |grad phi|^2 over the duct's hexels", ""},
         {"artery_energy_J", "Electric heat in the artery", "J", 1, 0, B::less, "as for the duct", ""},
         {"duct_current_density_A_per_m2", "Greatest current density in the duct", "mA/mm²", 1e-3, 0, B::less,
-         "sqrt(sigma q), q the electric heat per volume, sigma at body temperature", ""},
+         "sqrt(sigma q), q the electric heat per volume of a hexel, sigma as it is then", ""},
         {"artery_current_density_A_per_m2", "Greatest current density in the artery", "mA/mm²", 1e-3, 0, B::less,
          "as for the duct", ""},
         {"duct_peak_K", "Hottest spot of the duct", "°C", 1, kToCelsius, B::less,

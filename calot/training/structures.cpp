@@ -38,7 +38,6 @@ bool on_surface(const tissue::Model& model, std::int64_t hexel, tissue::Material
 Structure::Structure(const tissue::Model& model, tissue::MaterialIndex material, const Vec3& eye_m)
     : material_(material) {
     if (material == tissue::kNoMaterial) return;
-    conductivity_S_per_m_ = model.materials[material].electric_conductivity_S_per_m;
     for (std::int64_t h = model.hexels.first; h < model.hexels.last; ++h)
         if (model.hexel_initial.test(h) && model.hexel_material[static_cast<std::size_t>(h)] == material)
             hexels_.push_back(h);
@@ -108,20 +107,6 @@ StructureState Structure::look(const tissue::State& state) const {
     if (!probes_.empty()) now.freed = static_cast<double>(free_all) / static_cast<double>(probes_.size());
     if (front_probes_ > 0) now.exposed = static_cast<double>(free_front) / static_cast<double>(front_probes_);
     return now;
-}
-
-void Structure::heat(const tissue::Model& model, const tissue::JouleHeat& joule, double& power_W,
-                     double& most_A2_per_m4) const {
-    power_W = most_A2_per_m4 = 0.0;
-    if (joule.size.x == 0) return;
-    for (std::int64_t hexel : hexels_) {
-        const Int3 cell = model.hexels.coordinates(hexel), at = cell - joule.low;
-        if (glm::any(glm::lessThan(at, Int3(0))) || glm::any(glm::greaterThanEqual(at, joule.size))) continue;
-        const auto index = static_cast<std::size_t>(joule.index(cell));
-        const double density = static_cast<double>(joule.scale) * static_cast<double>(joule.density[index]);
-        power_W += density * model.hexel_volume_m3();
-        most_A2_per_m4 = std::max(most_A2_per_m4, conductivity_S_per_m_ * density);
-    }
 }
 
 std::vector<std::int64_t> hexels_at_organ(const tissue::Model& model, const std::string& organ) {

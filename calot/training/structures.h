@@ -40,9 +40,6 @@ class Structure {
     bool exists() const { return !hexels_.empty(); }
     std::size_t surface_size() const { return probes_.size(); }
     StructureState look(const tissue::State& state) const;
-    /// Sum of q over the structure [W], and the greatest sigma q [A^2/m^4].
-    void heat(const tissue::Model& model, const tissue::JouleHeat& joule, double& power_W,
-              double& most_A2_per_m4) const;
     /// Whether a hexel of the structure is exposed now; for pictures.
     const std::vector<std::int64_t>& hexels() const { return hexels_; }
 
@@ -56,7 +53,6 @@ class Structure {
     bool free(const tissue::State& state, const Probe& probe) const;
 
     tissue::MaterialIndex material_;
-    double conductivity_S_per_m_ = 0.0;
     std::vector<std::int64_t> hexels_;
     std::vector<Probe> probes_;
     std::vector<std::int64_t> cells_;     ///< that must be free, probe by probe

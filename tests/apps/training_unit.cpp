@@ -133,6 +133,14 @@ TEST(Training, ASessionGoesOnFromAMoment) {
     // The script goes on as it did: the same inputs, the same score.
     EXPECT_EQ(Json::parse(read_file(one + "score.json")), Json::parse(read_file(two + "score.json")));
     EXPECT_EQ(run({"replay", two + "recording.calot", "--verify"}).code, 0);
+    // Run again from a moment, with pictures' worth of output: a recording that stands on its own.
+    const std::string late = desk.folder / "late";
+    const Outcome replayed = run({"replay", one + "recording.calot", "--from", "0.03", "--verify", "--frames", "none",
+                                  "--out", late});
+    EXPECT_EQ(replayed.code, 0) << replayed.output;
+    EXPECT_TRUE(contains(replayed.output, "verified")) << replayed.output;
+    EXPECT_EQ(run({"replay", late + "/recording.calot", "--verify"}).code, 0);
+    EXPECT_EQ(run({"replay", one + "recording.calot", "--from", "7"}).code, 2);
     const Outcome listed = run({"sessions", "--data", desk.data});
     EXPECT_TRUE(contains(listed.output, "continues 1 from 0.0 s")) << listed.output;
     EXPECT_EQ(run({"continue", "1", "--from", "7", "--data", desk.data}).code, 2);

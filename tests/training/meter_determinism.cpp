@@ -1,5 +1,7 @@
 // What the meter tells: plausible against what the state says, the same on replay and after a restart in the middle.
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "calot/base/parallel.h"
@@ -53,6 +55,29 @@ TEST(Meter, AgreesWithTheState) {
     EXPECT_LE(metrics.at("duct_energy_J"), metrics.at("energy_J"));
     EXPECT_GE(metrics.at("duct_peak_K"), 310.0);
     EXPECT_FALSE(m.meter->events().empty());
+}
+
+TEST(Meter, MeasuresBothHands) {
+    simulation::Simulation run(test::coarse_setup());
+    Meter one(run), both(run);
+    std::vector<tissue::Input> inputs;
+    for (int k = 0; k < 400; ++k) {  // 40 mm/s to the right, high above the tissue; it starts and stops
+        tissue::Input input = run.setup().script.at(run.time_s());
+        run.tick(input);
+        one.after_tick(run, input);
+        input.grasper.present = true;
+        input.grasper.pose.position_m = Vec3(4e-5 * std::clamp(k - 20, 0, 360), 0.0, 0.06);
+        both.after_tick(run, input);
+        inputs.push_back(input);
+    }
+    const Metrics metrics = both.metrics();
+    EXPECT_NEAR(metrics.at("grasper_path_m"), 4e-5 * 360, 1e-9);
+    EXPECT_LT(metrics.at("grasper_smoothness"), -1.0);
+    EXPECT_EQ(one.metrics().count("grasper_path_m"), 0u);
+    Meter again(simulation::Simulation(test::coarse_setup()));
+    again.restore(both.save(), inputs);
+    EXPECT_EQ(again.metrics().at("grasper_path_m"), metrics.at("grasper_path_m"));
+    EXPECT_EQ(again.metrics().at("grasper_smoothness"), metrics.at("grasper_smoothness"));
 }
 
 TEST(Meter, SeesWhatIsExposed) {

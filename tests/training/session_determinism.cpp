@@ -31,6 +31,7 @@ struct Stored {
             const tissue::Input input = run.setup().script.at(run.time_s());
             run.tick(input);
             live.after_tick(run, input);
+            if (run.state().tick == 1100) smoke = run.work().smoke.particles();
             if (run.state().tick == 613 || run.state().tick == 1100) hashes.push_back(tissue::hash(run.state()));
         }
         row = live.finish(run);
@@ -38,6 +39,7 @@ struct Stored {
     }
     SessionRow row;
     std::vector<std::uint64_t> hashes;
+    std::vector<effects::SmokeParticle> smoke;  ///< at tick 1100
 };
 
 struct Shared {
@@ -79,10 +81,26 @@ TEST(Session, EveryMomentIsReachedToTheLastBit) {
         EXPECT_EQ(moment.run->state().tick, ticks[k]);
         EXPECT_EQ(tissue::hash(moment.run->state()), shared().stored.hashes[k]) << ticks[k];
     }
+    // What is only seen is there as it was, too: from the checkpoint at 1000.
+    const Moment seen = reach(store, id, 1100, test::coarse_setup());
+    const std::vector<effects::SmokeParticle>& smoke = seen.run->work().smoke.particles();
+    ASSERT_FALSE(shared().stored.smoke.empty());
+    ASSERT_EQ(smoke.size(), shared().stored.smoke.size());
+    for (std::size_t k = 0; k < smoke.size(); ++k)
+        EXPECT_EQ(smoke[k].position_m, shared().stored.smoke[k].position_m) << k;
     const Moment end = reach(store, id, 1200, test::coarse_setup());
     Metrics told = end.meter->metrics();
     for (const auto& [name, value] : shared().stored.row.metrics) EXPECT_EQ(told.at(name), value) << name;
     EXPECT_THROW(reach(store, id, 1201, test::coarse_setup()), InputError);
+}
+
+TEST(Session, CheckpointsOfAnOlderVersionCountForNothing) {
+    const test::TestFolder folder("older_checkpoints");
+    const std::string path = folder.path() + "/checkpoints.calot";
+    std::ofstream(path) << "CALOTCK1" << std::string(200, 'x');
+    EXPECT_TRUE(CheckpointReader(path).ticks().empty());
+    std::ofstream(path) << "CALOTCK9" << std::string(200, 'x');
+    EXPECT_THROW(CheckpointReader{path}, InputError);
 }
 
 TEST(Session, AnotherGoesOnFromAMoment) {
