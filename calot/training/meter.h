@@ -102,6 +102,7 @@ class Meter {
         std::array<std::int64_t, 2> touched_at{-1, -1};
         std::array<bool, 2> injured{};
         bool at_organ = false, in_contact = false;
+        std::uint32_t gap = 0;  ///< to the next eight bytes: what is archived has no bytes of its own will
         std::array<StructureState, 2> state{};
     } sums_;
     MovementWatch hook_, grasper_;
