@@ -292,8 +292,8 @@ std::vector<Case> karaki(const Options& options) {
 /// Druzijanic et al. 2012: human peritoneum.
 std::vector<Case> peritoneum(const Options& options) {
     const Trial trial = perform(options, {"peritoneum-2012.toml", {}, 0.0, {}});
-    Case result = published("peritoneum: lateral damage of a cut", trial.section_damage_mm * 1e3, 0.5 * 216.0, 1.5 * 216.0,
-                            "um", "Druzijanic et al. 2012, PMC3468644 (abstract): mean 215.79 um");
+    Case result = published("peritoneum: lateral damage of a cut", trial.section_damage_mm * 1e3, 0.5 * 216.0,
+                            1.5 * 216.0, "um", "Druzijanic et al. 2012, PMC3468644 (abstract): mean 215.79 um");
     result.note = fmt::format(
         "mean of all sections across; the abstract gives a mean alone, the band is half of it on either side, chosen. "
         "{:.2f} mm3 removed, farthest damage {:.2f} mm",

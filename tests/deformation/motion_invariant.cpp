@@ -4,8 +4,8 @@
 
 #include "calot/base/parallel.h"
 #include "calot/deformation/topology.h"
-#include "support/allocations.h"
 #include "calot/validation/elastic_rig.h"
+#include "support/allocations.h"
 
 namespace calot::deformation::rig {
 
