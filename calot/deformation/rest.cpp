@@ -171,8 +171,8 @@ PhyxelRest phyxel_rest(const Model& model, const State& state, const Work& work,
     rest.volume_m3 *= static_cast<double>(work.volume_share[static_cast<std::size_t>(phyxel)]) *
                       std::min(1.0, trace / initial_trace(model, phyxel));
     const double youngs = rest.mu_Pa * (3.0 * rest.lambda_Pa + 2.0 * rest.mu_Pa) / (rest.lambda_Pa + rest.mu_Pa);
-    rest.hourglass_N_per_m = model.deformation.hourglass_alpha * surface_factor(trace, rest.fill) * youngs *
-                             rest.volume_m3 / (trace * s2);
+    rest.hourglass_N_per_m =
+        model.deformation.hourglass_alpha * surface_factor(trace, rest.fill) * youngs * rest.volume_m3 / (trace * s2);
     return rest;
 }
 

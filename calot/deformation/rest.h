@@ -26,8 +26,8 @@ PhyxelRest phyxel_rest(const tissue::Model& model, const tissue::State& state, c
 ///
 /// Strain is known at the centres of cells. Where the surface cuts through a cell, its hexels lie to one side of the
 /// centre; so their volume counts at their centroid, spread over the phyxels about it by trilinear weights. Without
-/// this a bar six cells across, the outer ones half full, is some 10 % too stiff (docs/validation.md). What has burnt away
-/// since shrinks the volume in proportion: new surfaces stay as coarse as their cells.
+/// this a bar six cells across, the outer ones half full, is some 10 % too stiff (docs/validation.md). What has burnt
+/// away since shrinks the volume in proportion: new surfaces stay as coarse as their cells.
 Array<float> volume_shares(const tissue::Model& model);
 
 }  // namespace calot::deformation

@@ -125,14 +125,16 @@ void converge(Case& result, const Points& error_at_cells, double least_order, co
     result.order = observed_order(error_at_cells);
     result.least_order = least_order;
     Figure figure{result.name + ": convergence", across, "relative error", {}, true};
-    Curve seen{"seen", {}, true}, line{"", {}, false};
+    Curve seen{"seen", {}, true};
     for (const auto& [cells, error] : error_at_cells) seen.points.emplace_back(cells, std::abs(error));
-    // The line of the least order wanted, through the coarsest.
-    const double slope = least_order > 0.0 ? least_order : *result.order;
-    line.name = "order " + std::to_string(slope).substr(0, 3);
-    const auto [n0, e0] = seen.points.front();
-    for (const auto& [cells, error] : seen.points) line.points.emplace_back(cells, e0 * std::pow(n0 / cells, slope));
-    figure.curves = {line, seen};
+    if (least_order > 0.0) {  // the line of the least order wanted, through the coarsest
+        Curve line{"order " + std::to_string(least_order).substr(0, 3), {}, false};
+        const auto [n0, e0] = seen.points.front();
+        for (const auto& [cells, error] : seen.points)
+            line.points.emplace_back(cells, e0 * std::pow(n0 / cells, least_order));
+        figure.curves.push_back(line);
+    }
+    figure.curves.push_back(seen);
     result.figures.push_back(figure);
     result.verdict = judge(result);
 }

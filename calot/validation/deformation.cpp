@@ -83,8 +83,7 @@ struct Layers {
 Layers layers(const Body& body, const Reference& reference, int axis, Sides sides) {
     const double shaved = sides == Sides::half_full ? kSpacing_m : 0.0;
     const Vec3 size = kSpacing_m * (Vec3(body.model.phyxels.size) - 2.0) - Vec3(shaved, shaved, 0.0);
-    const Vec3 corner =
-        body.model.phyxels.centre_m(Int3(1)) - 0.5 * kSpacing_m + 0.5 * Vec3(shaved, shaved, 0.0);
+    const Vec3 corner = body.model.phyxels.centre_m(Int3(1)) - 0.5 * kSpacing_m + 0.5 * Vec3(shaved, shaved, 0.0);
     const auto count = static_cast<std::size_t>(body.model.phyxels.size.z);
     std::vector<double> seen(count), expected(count), number(count);
     body.for_each_phyxel([&](std::int64_t p) {
@@ -150,11 +149,11 @@ std::vector<Case> cantilever(const Options& options) {
 }
 
 std::vector<Case> cube(const Options& options) {
-    return sagging(options, "cube under gravity", 1, 2, -0.1,
-                   options.quick ? std::vector<int>{4, 6, 8} : std::vector<int>{4, 6, 8, 12}, Sides::full, 0.0, [](int n) {
-                       return 0.5 * 1.5708 / (n * kSpacing_m) *
-                              std::sqrt(fat().youngs_modulus_Pa / fat().density_kg_per_m3);
-                   });
+    return sagging(
+        options, "cube under gravity", 1, 2, -0.1,
+        options.quick ? std::vector<int>{4, 6, 8} : std::vector<int>{4, 6, 8, 12}, Sides::full, 0.0, [](int n) {
+            return 0.5 * 1.5708 / (n * kSpacing_m) * std::sqrt(fat().youngs_modulus_Pa / fat().density_kg_per_m3);
+        });
 }
 
 /// Angle over torque [rad/(N m)] of a free bar whose end layers are turned against each other; they may warp.

@@ -199,7 +199,8 @@ std::vector<Case> power(const Options& options) {
     const tissue::GeneratorState& generator = rig.state.generator;
     const double in = rig.work->electrode_conductance_S * generator.voltage_V * generator.voltage_V;
     const tissue::JouleHeat& joule = rig.exchange.joule;
-    return {compare(kSuite, "V I against heat and outflow", joule.total_W + joule.outflow_W + joule.wire_W, in, "W", 5e-4, "conservation: current out of the metal times voltage")};
+    return {compare(kSuite, "V I against heat and outflow", joule.total_W + joule.outflow_W + joule.wire_W, in, "W",
+                    5e-4, "conservation: current out of the metal times voltage")};
 }
 
 }  // namespace

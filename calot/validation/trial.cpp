@@ -101,8 +101,8 @@ class RestingHand {
         constexpr double kCompliance_m_per_Ns = 0.02, kFastest_m_per_s = 0.02;
         if (force_N_ > 0.0 && input.pedal) {
             const double missing_N = force_N_ - run.state().hook_force_N.z;
-            lowered_m_ += run.model().tick_s *
-                          std::clamp(kCompliance_m_per_Ns * missing_N, -kFastest_m_per_s, kFastest_m_per_s);
+            lowered_m_ +=
+                run.model().tick_s * std::clamp(kCompliance_m_per_Ns * missing_N, -kFastest_m_per_s, kFastest_m_per_s);
         }
         input.hook.position_m.z -= lowered_m_;
     }

@@ -13,11 +13,11 @@ namespace calot::validation {
 struct Trial {
     std::string scene;
     double removed_mm3 = 0.0;
-    double depth_mm = 0.0;     ///< deepest removed hexel, below the block's top
-    double damage_mm = 0.0;    ///< Omega >= 1, horizontally beyond what was removed and where the metal was
+    double depth_mm = 0.0;           ///< deepest removed hexel, below the block's top
+    double damage_mm = 0.0;          ///< Omega >= 1, horizontally beyond what was removed and where the metal was
     double section_damage_mm = 0.0;  ///< the same of one section across a stroke along x, mean of all under the metal
-    double damaged_mm3 = 0.0;  ///< present tissue with Omega >= 1
-    double metal_mm = 0.0;     ///< half width that the metal has passed through, across
+    double damaged_mm3 = 0.0;        ///< present tissue with Omega >= 1
+    double metal_mm = 0.0;           ///< half width that the metal has passed through, across
     double first_Ohm = 0.0, least_Ohm = 0.0, last_Ohm = 0.0;
     double rise_of_impedance = 1.0;  ///< largest ratio to the least before
     double imbalance = 0.0, delivered_J = 0.0;
@@ -34,8 +34,8 @@ struct TrialPlan {
     std::vector<std::string> assignments;                      ///< as `calot simulate --set`
     double until_s = 0.0;                                      ///< 0: the scene's end
     std::function<void(const simulation::Simulation&)> watch;  ///< after every tick, may be empty
-    /// The hand that follows tissue as it recedes: from the first touch on it presses with this force, downwards, at most
-    /// at 20 mm/s, and only while the pedal is down. 0: it goes where the script says.
+    /// The hand that follows tissue as it recedes: from the first touch on it presses with this force, downwards, at
+    /// most at 20 mm/s, and only while the pedal is down. 0: it goes where the script says.
     double rests_with_N = 0.0;
 };
 

@@ -20,8 +20,8 @@ Rig bar_rig() {
     return rig;
 }
 
-/// From metal on the bar's sides to the middle of its hexel, in resistances of one hexel: half a cell through as much of
-/// faces and edges as counts at most (assemble.cpp).
+/// From metal on the bar's sides to the middle of its hexel, in resistances of one hexel: half a cell through as much
+/// of faces and edges as counts at most (assemble.cpp).
 double bar_entry() {
     return 0.5 / (3.0 + 4.0 * 0.8);
 }

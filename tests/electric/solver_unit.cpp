@@ -260,6 +260,10 @@ TEST(Contact, ArcsStrikeAcrossAGapInCoagOnly) {
     EXPECT_EQ(rig.state.field.contacts, 0);
     EXPECT_GT(rig.state.generator.power_W, 1.0);
     const double through_arcs = rig.state.generator.impedance_Ohm;
+    const tissue::JouleHeat& joule = rig.exchange.joule;
+    EXPECT_GT(joule.wire_W, 0.0) << "an arc heats both its ends";
+    EXPECT_LT(joule.wire_W, 0.5 * rig.state.generator.power_W);
+    EXPECT_NEAR(joule.total_W + joule.outflow_W + joule.wire_W, rig.state.generator.power_W, 1e-9);
     for (tissue::NearHexel& near : rig.exchange.near) near.bare_gap_m = 0.0f;
     rig.solve();
     EXPECT_LT(rig.state.generator.impedance_Ohm, through_arcs) << "an arc has a resistance of its own";

@@ -47,6 +47,17 @@ double wire_J(const HeatRun& run) {
 
 }  // namespace
 
+TEST(Tip, ArcsHeatTheWireAndTheBudgetKnows) {
+    HeatRun run = touched_block();
+    run.exchange.joule.wire_W = 5.0;
+    run.run(1000);
+    const tissue::EnergyBudget& e = run.state.energy_J;
+    EXPECT_NEAR(e.delivered, 5.0, 1e-9);
+    EXPECT_GT(run.state.tip.temperature_K, run.model.thermal.body_temperature_K + 20.0);
+    EXPECT_NEAR(wire_J(run) + run.state.tip.lost_J, e.tip, 1e-9 * e.delivered);
+    EXPECT_NEAR(e.accounted() + stored_J(run.model, run.state), e.delivered, 1e-6 * e.delivered);
+}
+
 TEST(Tip, HeatsTissueAndKeepsItsEnergy) {
     HeatRun run = touched_block();
     run.state.tip.temperature_K = 473.15;
