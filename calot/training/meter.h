@@ -102,6 +102,7 @@ class Meter {
         std::array<std::int64_t, 2> touched_at{-1, -1};
         std::array<bool, 2> injured{};
         bool at_organ = false, in_contact = false;
+        std::array<char, 4> unused{};  ///< instead of padding, whose bytes would differ from run to run
         std::array<StructureState, 2> state{};
     } sums_;
     MovementWatch hook_, grasper_;
