@@ -43,7 +43,7 @@ Elsewhere add_fixed_faces(Work& work, const Cells phi, float scale, Cells heat) 
 }
 
 /// Heat of present hexels into the state, and its sums.
-void keep_heat(const tissue::Model& model, tissue::State& state, Work& work, const Cells heat) {
+void keep_hexels(const tissue::Model& model, tissue::State& state, Work& work, const Cells heat) {
     const Window& window = work.window;
     const Level& fine = work.grid.levels[0];
     const double s = model.hexels.spacing_m;
@@ -72,16 +72,20 @@ double total(const HeatSums::Places& places) {
 
 }  // namespace
 
-void find_heat(const tissue::Model& model, tissue::State& state, Work& work, double scale) {
+void spread_heat(Work& work) {
     Level& fine = work.grid.levels[0];
     const Cells phi = work.grid.krylov.x, heat = fine.solution;
-    const auto factor = static_cast<float>(scale * scale);
+    const auto factor = static_cast<float>(work.scale * work.scale);
     parallel_for("electric.heat", 0, static_cast<std::int64_t>(fine.groups.size()), kTaskGroups,
                  [&](std::int64_t b, std::int64_t e) {
                      work.grid.kernels.heat(fine, work.sigma_S_per_m.data(), phi.data(), factor, heat.data(), b, e);
                  });
-    const Elsewhere elsewhere = add_fixed_faces(work, phi, static_cast<float>(scale), heat);
-    keep_heat(model, state, work, heat);
+}
+
+void keep_heat(const tissue::Model& model, tissue::State& state, Work& work) {
+    const Cells phi = work.grid.krylov.x, heat = work.grid.levels[0].solution;
+    const Elsewhere elsewhere = add_fixed_faces(work, phi, static_cast<float>(work.scale), heat);
+    keep_hexels(model, state, work, heat);
 
     const double s = model.hexels.spacing_m;
     state.field.tissue_S = 0.0;

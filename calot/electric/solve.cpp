@@ -122,16 +122,22 @@ bool iterate_field(const tissue::Model& model, Work& work, int count) {
     return iterate(work.grid, count, model.electric.relative_residual);
 }
 
+void weigh_field(Work& work) {
+    work.finite = is_finite(work.grid);
+    if (!work.finite) return;
+    work.scale = best_scale(work.grid, work.right);
+    spread_heat(work);
+}
+
 void finish_field(const tissue::Model& model, tissue::State& state, Work& work) {
-    if (!is_finite(work.grid)) {
+    if (!work.finite) {
         state.field.solved = 0;
         state.status = {false, "potential", work.entries.empty() ? -1 : work.entries[0].cell, state.tick};
         return;
     }
     work.iterations = work.grid.iterations;
-    const double scale = best_scale(work.grid, work.right);
-    find_heat(model, state, work, scale);
-    keep_potential(state, work, static_cast<float>(scale));
+    keep_heat(model, state, work);
+    keep_potential(state, work, static_cast<float>(work.scale));
     state.field.residual = relative_residual(work.grid);
     state.field.contacts = static_cast<std::int64_t>(work.entries.size()) - work.arcs;
     state.field.arcs = work.arcs;
@@ -160,6 +166,7 @@ void step_field(const tissue::Model& model, tissue::State& state, tissue::Exchan
             iterate_field(model, work, 1);
         else
             finish_field(model, state, work);
+        if (part == model.frame_ticks - 2) weigh_field(work);
     }
     if (part == model.frame_ticks - 1) {
         // What was solved is no use when the metal has meanwhile left.
@@ -178,6 +185,7 @@ void solve_now(const tissue::Model& model, tissue::State& state, tissue::Exchang
         prepare(state, work);
         begin_field(work);
         iterate_field(model, work, model.electric.max_iterations);
+        weigh_field(work);
         finish_field(model, state, work);
     }
     drive_load(model, state, exchange, input);

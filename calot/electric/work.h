@@ -38,6 +38,8 @@ struct Work {
     BitArray entered;                           ///< cells of the entries
     std::vector<OuterFace> outer_faces;
     std::vector<RightEntry> right;
+    bool finite = true;  ///< the potential, of the last solve
+    double scale = 1.0;  ///< its best multiple
     HeatSums sums;
 
     // What came out, for tests and benchmarks
@@ -60,10 +62,14 @@ void prepare(const tissue::State& state, Work& work);
 void begin_field(Work& work);
 /// At most `count` iterations; true when the residual is reached.
 bool iterate_field(const tissue::Model& model, Work& work, int count);
+/// The best multiple of the potential, and the heat between cells.
+void weigh_field(Work& work);
 /// Heat of one volt, potential, conductances into the state.
 void finish_field(const tissue::Model& model, tissue::State& state, Work& work);
 
-/// Heat of the field in krylov.x, scaled, for one volt into State::joule_S_per_m3, with its sums (joule.cpp).
-void find_heat(const tissue::Model& model, tissue::State& state, Work& work, double scale);
+/// Heat of the field in krylov.x, scaled, in the cells; and for one volt into State::joule_S_per_m3, with its sums
+/// (joule.cpp).
+void spread_heat(Work& work);
+void keep_heat(const tissue::Model& model, tissue::State& state, Work& work);
 
 }  // namespace calot::electric
