@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "calot/base/parallel.h"
 #include "calot/surface/shape_mesh.h"
@@ -34,6 +35,35 @@ int weight_slot(const std::string& material) {
     }
 }
 
+/// Four lanes, which every machine has.
+using Four = float __attribute__((vector_size(16)));
+Four four(float value) {
+    return Four{value, value, value, value};
+}
+Four load(const float* p) {
+    Four v;
+    std::memcpy(&v, p, sizeof(v));
+    return v;
+}
+Four smaller(Four a, Four b) {
+    return a < b ? a : b;
+}
+Four greater(Four a, Four b) {
+    return a > b ? a : b;
+}
+
+/// Of three cells in a row, by their presence bits: 1 where there is a hexel; the bytes of their materials that count.
+constexpr std::array<std::array<float, 4>, 8> kThere{{{0, 0, 0, 0},
+                                                      {1, 0, 0, 0},
+                                                      {0, 1, 0, 0},
+                                                      {1, 1, 0, 0},
+                                                      {0, 0, 1, 0},
+                                                      {1, 0, 1, 0},
+                                                      {0, 1, 1, 0},
+                                                      {1, 1, 1, 0}}};
+constexpr std::array<std::uint32_t, 8> kBytes{0x000000, 0x0000ff, 0x00ff00, 0x00ffff,
+                                              0xff0000, 0xff00ff, 0xffff00, 0xffffff};
+
 /// What a vertex takes from the hexels around it.
 class Attributes {
   public:
@@ -44,10 +74,13 @@ class Attributes {
           temperature_K_(temperature_K),
           film_m_(film_m),
           inverse_spacing_(static_cast<float>(1.0 / model.hexels.spacing_m)) {
-        std::array<int, 3> strides{model.hexels.stride.x, model.hexels.stride.y, model.hexels.stride.z};
-        std::sort(strides.begin(), strides.end());
-        middle_stride_ = strides[1];
-        slow_stride_ = strides[2];
+        std::array<int, 3> axes{0, 1, 2};
+        std::sort(axes.begin(), axes.end(), [&](int a, int b) { return model.hexels.stride[a] < model.hexels.stride[b]; });
+        fast_ = axes[0];
+        middle_ = axes[1];
+        slow_ = axes[2];
+        middle_stride_ = model.hexels.stride[middle_];
+        slow_stride_ = model.hexels.stride[slow_];
         for (std::size_t k = 1; k < model.materials.size(); ++k) {
             const tissue::Material& material = model.materials[k];
             slot_[k] = weight_slot(material.name);
@@ -66,62 +99,107 @@ class Attributes {
     }
 
   private:
-    /// Kernel (1 - r^2 / R^2)^2 of the distance in cells.
-    static float kernel(const Vec3f& d, float reach) {
-        const float left = 1.0f - glm::dot(d, d) / (reach * reach);
-        return left > 0.0f ? left * left : 0.0f;
+    // Weights are (1 - r^2 / R^2)^2, r the distance in cells: squares along the axes are added up.
+
+    /// (k - (N - 1) / 2 - from)^2 for k = 0 ... N - 1.
+    template <std::size_t N>
+    static std::array<float, N> squares(float from) {
+        std::array<float, N> out;
+        for (std::size_t k = 0; k < N; ++k) {
+            const float d = static_cast<float>(k) - static_cast<float>(N / 2) - from;
+            out[k] = d * d;
+        }
+        return out;
     }
 
+    /// The nine rows of three cells around the owner, a row at a time: temperatures and the like lie side by side.
     void average_present(std::int64_t owner, const Vec3f& from_owner, TissueVertex& vertex) const {
-        const Lattice& lattice = model_.hexels;
-        float film = 0.0f;
-        float sum = 0.0f, temperature = 0.0f, peak = 0.0f, damage = 0.0f, dryness = 0.0f;
+        // Four lanes, the last one empty.
+        const Four cells = Four{-1.0f, 0.0f, 1.0f, 2.0f} - four(from_owner[fast_]), fast = cells * cells;
+        const std::array<float, 3> middle = squares<3>(from_owner[middle_]), slow = squares<3>(from_owner[slow_]);
+        const std::uint8_t own = model_.hexel_material[static_cast<std::size_t>(owner)];
+        const std::uint32_t all_own = 0x010101u * own;
+        const Four one = four(1.0f), none = four(0.0f);
+        Four sum = none, temperature = none, peak = none, damage = none, dryness = none, film = none, of_own = none;
         float weights[4] = {0, 0, 0, 0};
-        for (int z = -1; z <= 1; ++z)
-            for (int y = -1; y <= 1; ++y)
-                for (int x = -1; x <= 1; ++x) {
-                    const Int3 d(x, y, z);
-                    const std::int64_t hexel = owner + lattice.offset(d);
-                    if (!state_.hexel_present.test(hexel)) continue;
-                    const float w = kernel(Vec3f(d) - from_owner, 2.2f) + 1e-4f;
-                    const auto h = static_cast<std::size_t>(hexel);
-                    const std::size_t material = model_.hexel_material[h];
-                    sum += w;
-                    if (!film_m_.empty()) film += w * film_m_[h];
-                    temperature += w * (temperature_K_.empty() ? body_K() : temperature_K_[h]);
-                    peak += w * state_.peak_temperature_K[h];
-                    damage += w * std::min(state_.damage[h], 20.0f);
-                    dryness += w * (1.0f - std::min(1.0f, state_.water_kg_per_m3[h] * inverse_water_[material]));
-                    weights[slot_[material]] += w;
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t b = 0; b < 3; ++b) {
+                const std::int64_t row = owner + (static_cast<std::int64_t>(b) - 1) * middle_stride_ +
+                                         (static_cast<std::int64_t>(c) - 1) * slow_stride_ - 1;
+                const std::uint32_t present = state_.hexel_present.bits32(row) & 7u;
+                if (present == 0) continue;
+                const auto h = static_cast<std::size_t>(row);
+                const Four left = greater(none, one - (fast + four(middle[b] + slow[c])) * four(1.0f / (2.2f * 2.2f)));
+                const Four w = (left * left + four(1e-4f)) * load(kThere[present].data());
+                sum += w;
+                temperature += w * (temperature_K_.empty() ? four(body_K()) : load(temperature_K_.data() + h));
+                peak += w * load(state_.peak_temperature_K.data() + h);
+                damage += w * smaller(load(state_.damage.data() + h), four(20.0f));
+                if (!film_m_.empty()) film += w * load(film_m_.data() + h);
+                const Four water = load(state_.water_kg_per_m3.data() + h);
+                std::uint32_t materials;
+                std::memcpy(&materials, model_.hexel_material.data() + h, sizeof(materials));
+                if (((materials ^ all_own) & kBytes[present]) == 0) {
+                    dryness += w * (one - smaller(one, water * four(inverse_water_[own])));
+                    of_own += w;
+                    continue;
                 }
-        const float share = sum > 0.0f ? 1.0f / sum : 0.0f;
-        vertex.temperature_K = sum > 0.0f ? temperature * share : body_K();
-        vertex.peak_temperature_K = sum > 0.0f ? peak * share : body_K();
-        vertex.damage = damage * share;
-        vertex.dryness = dryness * share;
-        vertex.blood = std::min(1.0f, film * share / kOpaqueFilm_m);
+                Four full = one;
+                for (int k = 0; k < 3; ++k) {
+                    if (w[k] == 0.0f) continue;
+                    const std::size_t material = (materials >> (8 * k)) & 0xffu;
+                    full[k] = inverse_water_[material];
+                    weights[slot_[material]] += w[k];
+                }
+                dryness += w * (one - smaller(one, water * full));
+            }
+        const auto total = [](const Four& parts) { return parts[0] + parts[1] + parts[2]; };
+        weights[slot_[own]] += total(of_own);
+        const float all = total(sum), share = all > 0.0f ? 1.0f / all : 0.0f;
+        vertex.temperature_K = all > 0.0f ? total(temperature) * share : body_K();
+        vertex.peak_temperature_K = all > 0.0f ? total(peak) * share : body_K();
+        vertex.damage = total(damage) * share;
+        vertex.dryness = total(dryness) * share;
+        vertex.blood = std::min(1.0f, total(film) * share / kOpaqueFilm_m);
         for (int k = 0; k < 4; ++k) vertex.look_weights[k] = weights[k] * share;
-        if (sum <= 0.0f) vertex.look_weights[0] = 1.0f;
+        if (all <= 0.0f) vertex.look_weights[0] = 1.0f;
     }
 
+    /// The share of burnt cells among the empty ones of the 5^3 around the owner, by weight.
     float exposure(const Int3& cell, std::int64_t owner, const Vec3f& from_owner) const {
         const Lattice& lattice = model_.hexels;
         const bool inside =
             glm::all(glm::greaterThanEqual(cell, Int3(2))) && glm::all(glm::lessThan(cell, lattice.size - 2));
         if (inside && !burnt_nearby(owner)) return 0.0f;
+        const std::array<float, 5> fast = squares<5>(from_owner[fast_]), middle = squares<5>(from_owner[middle_]),
+                                   slow = squares<5>(from_owner[slow_]);
         float burnt = 0.0f, empty = 0.0f;
-        for (int z = -2; z <= 2; ++z)
-            for (int y = -2; y <= 2; ++y)
-                for (int x = -2; x <= 2; ++x) {
-                    const Int3 d(x, y, z);
-                    const float w = kernel(Vec3f(d) - from_owner, 2.5f);
-                    if (w <= 0.0f) continue;
-                    const bool known = inside || lattice.contains(cell + d);
-                    const std::int64_t hexel = owner + lattice.offset(d);
-                    if (known && state_.hexel_present.test(hexel)) continue;
-                    empty += w;
-                    if (known && model_.hexel_initial.test(hexel)) burnt += w;
+        for (std::size_t c = 0; c < 5; ++c)
+            for (std::size_t b = 0; b < 5; ++b) {
+                Int3 at = cell;
+                at[middle_] += static_cast<int>(b) - 2;
+                at[slow_] += static_cast<int>(c) - 2;
+                std::uint32_t known = 0x1f;  // beyond the lattice nothing is
+                if (!inside) {
+                    known = 0;
+                    for (int k = 0; k < 5; ++k) {
+                        Int3 there = at;
+                        there[fast_] += k - 2;
+                        known |= (lattice.contains(there) ? 1u : 0u) << k;
+                    }
                 }
+                const std::int64_t row = lattice.index(at) - 2;
+                const std::uint32_t initial = known == 0 ? 0u : model_.hexel_initial.bits32(row) & known;
+                const std::uint32_t present = known == 0 ? 0u : state_.hexel_present.bits32(row) & known;
+                for (std::uint32_t rest = ~present & 0x1fu; rest != 0; rest &= rest - 1) {
+                    const int k = __builtin_ctz(rest);
+                    const float left =
+                        1.0f - (fast[static_cast<std::size_t>(k)] + middle[b] + slow[c]) * (1.0f / (2.5f * 2.5f));
+                    if (left <= 0.0f) continue;
+                    empty += left * left;
+                    if ((initial >> k) & 1u) burnt += left * left;
+                }
+            }
         return empty > 0.0f ? burnt / empty : 0.0f;
     }
 
@@ -143,6 +221,7 @@ class Attributes {
     std::span<const float> temperature_K_;
     std::span<const float> film_m_;
     float inverse_spacing_;
+    int fast_, middle_, slow_;  ///< axes, by stride
     std::int64_t middle_stride_, slow_stride_;
     std::array<int, 256> slot_{};
     std::array<float, 256> inverse_water_{};
