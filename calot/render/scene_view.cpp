@@ -243,20 +243,24 @@ void fill_tissue(const tissue::Model& model, const tissue::State& state, std::sp
     assert(surface.rest_normal.size() == count && surface.owner.size() == count && surface.world_m.size() == count);
     assert(surface.deformation_gradient.empty() || surface.deformation_gradient.size() == count);
     vertices.resize(count);
+    parallel_for("render.fill_tissue", 0, static_cast<std::int64_t>(count), 4096, [&](std::int64_t low, std::int64_t high) {
+        fill_tissue(model, state, temperature_K, surface, static_cast<std::size_t>(low), static_cast<std::size_t>(high),
+                    vertices);
+    });
+}
+
+void fill_tissue(const tissue::Model& model, const tissue::State& state, std::span<const float> temperature_K,
+                 const SurfaceVertices& surface, std::size_t low, std::size_t high, std::span<TissueVertex> vertices) {
     const Attributes attributes(model, state, temperature_K, surface.film_m);
-    parallel_for("render.fill_tissue", 0, static_cast<std::int64_t>(count), 1024,
-                 [&](std::int64_t low, std::int64_t high) {
-                     for (std::int64_t k = low; k < high; ++k) {
-                         const auto v = static_cast<std::size_t>(k);
-                         TissueVertex& vertex = vertices[v];
-                         vertex.world_m = surface.world_m[v];
-                         vertex.rest_m = surface.rest_m[v];
-                         vertex.normal = surface.deformation_gradient.empty()
-                                             ? surface.rest_normal[v]
-                                             : turned(surface.rest_normal[v], surface.deformation_gradient[v]);
-                         attributes.fill(surface.owner[v], vertex);
-                     }
-                 });
+    for (std::size_t v = low; v < high; ++v) {
+        TissueVertex& vertex = vertices[v];
+        vertex.world_m = surface.world_m[v];
+        vertex.rest_m = surface.rest_m[v];
+        vertex.normal = surface.deformation_gradient.empty()
+                            ? surface.rest_normal[v]
+                            : turned(surface.rest_normal[v], surface.deformation_gradient[v]);
+        attributes.fill(surface.owner[v], vertex);
+    }
 }
 
 Look look_of(const std::string& name) {

@@ -28,6 +28,9 @@ struct SurfaceVertices {
 /// distance to the vertex; exposure is the share of burnt cells among the empty ones within 2.5 cells.
 void fill_tissue(const tissue::Model& model, const tissue::State& state, std::span<const float> temperature_K,
                  const SurfaceVertices& surface, std::vector<TissueVertex>& vertices);
+/// The vertices low ... high - 1 of them alone; `vertices` has all places.
+void fill_tissue(const tissue::Model& model, const tissue::State& state, std::span<const float> temperature_K,
+                 const SurfaceVertices& surface, std::size_t low, std::size_t high, std::span<TissueVertex> vertices);
 
 /// Which look an organ or material name asks for ("cystic_artery" -> artery ...); peritoneum when nothing fits.
 Look look_of(const std::string& name);

@@ -1,5 +1,7 @@
 #include "calot/viewer/picture.h"
 
+#include <algorithm>
+
 #include "calot/render/scene_view.h"
 
 namespace calot::viewer {
@@ -11,14 +13,20 @@ Picture::Picture(const simulation::Setup& setup) : organs_(render::organ_meshes(
 }
 
 void Picture::fill(const simulation::Simulation& run, const tissue::Input& input, render::View& view) {
+    begin(run, input, view);
+    go_on(run, rest_m_.size(), view);
+}
+
+void Picture::begin(const simulation::Simulation& run, const tissue::Input& input, render::View& view) {
     const surface::Mesh& mesh = run.surface().smooth_mesh();
     run.world_surface(world_);
+    rest_m_ = mesh.position_m;
+    rest_normal_ = mesh.normal;
+    owner_.assign(run.surface().owner().begin(), run.surface().owner().end());
+    view.tissue.resize(rest_m_.size());
+    done_ = 0;
     view.camera = camera_;
     view.time_s = run.time_s();
-    render::fill_tissue(run.model(), run.state(), run.work().thermal.temperature_K,
-                        {mesh.position_m, mesh.normal, run.surface().owner(), world_.position_m,
-                         world_.deformation_gradient, run.work().bleeding.film_m()},
-                        view.tissue);
     if (view.tissue_index_version != run.surface().version() || view.tissue_index.empty()) {
         view.tissue_index = mesh.index;
         view.tissue_index_version = run.surface().version();
@@ -28,6 +36,16 @@ void Picture::fill(const simulation::Simulation& run, const tissue::Input& input
     view.energised = input.pedal;
     view.smoke = run.work().smoke.particles();
     view.drops = run.work().bleeding.drops();
+}
+
+bool Picture::go_on(const simulation::Simulation& run, std::size_t count, render::View& view) {
+    const std::size_t end = std::min(rest_m_.size(), done_ + count);
+    render::fill_tissue(
+        run.model(), run.state(), run.work().thermal.temperature_K,
+        {rest_m_, rest_normal_, owner_, world_.position_m, world_.deformation_gradient, run.work().bleeding.film_m()},
+        done_, end, view.tissue);
+    done_ = end;
+    return done_ == rest_m_.size();
 }
 
 }  // namespace calot::viewer

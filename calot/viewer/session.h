@@ -52,7 +52,8 @@ class Session {
   private:
     void work();
     void book(double begun_s, double ended_s);
-    void publish(double now_s, const Controls& controls);
+    void begin_picture(const Controls& controls);
+    void publish();
 
     SessionOptions options_;
     SessionCore core_;

@@ -128,8 +128,14 @@ bool SessionCore::tick(const Controls& controls) {
 
 void fill_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture,
                    Snapshot& snapshot) {
+    begin_snapshot(run, input, picture, snapshot);
+    picture.go_on(run, snapshot.view.tissue.size(), snapshot.view);
+}
+
+void begin_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture,
+                    Snapshot& snapshot) {
     const tissue::State& state = run.state();
-    picture.fill(run, input, snapshot.view);
+    picture.begin(run, input, snapshot.view);
     snapshot.tick = state.tick;
     snapshot.time_s = run.time_s();
     snapshot.generator = state.generator;
@@ -147,7 +153,12 @@ void fill_snapshot(const simulation::Simulation& run, const tissue::Input& input
 }
 
 void SessionCore::fill(Snapshot& snapshot) {
-    fill_snapshot(*run_, input_, picture_, snapshot);
+    begin(snapshot);
+    go_on(snapshot, snapshot.view.tissue.size());
+}
+
+void SessionCore::begin(Snapshot& snapshot) {
+    begin_snapshot(*run_, input_, picture_, snapshot);
     snapshot.tip_m = right_.tip_m();
     snapshot.boiling_kg_per_s = boiling_kg_per_s_;
 }

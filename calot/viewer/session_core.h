@@ -26,6 +26,9 @@ Theatre theatre_of(const simulation::Simulation& run);
 
 /// What does not come from the hands: picture, generator, forces, blood.
 void fill_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture, Snapshot& snapshot);
+/// The same, but for what tissue looks like: Picture::go_on.
+void begin_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture,
+                    Snapshot& snapshot);
 
 /// Fills the snapshot and turns controls into inputs, tick by tick; no clock, no thread. What the thread of a Session
 /// runs, and what tests drive.
@@ -46,6 +49,9 @@ class SessionCore {
     /// One tick of hands and physics. False once the simulation's status is not ok.
     bool tick(const Controls& controls);
     void fill(Snapshot& snapshot);
+    /// The same, a few vertices after every tick. True when it is full.
+    void begin(Snapshot& snapshot);
+    bool go_on(Snapshot& snapshot, std::size_t vertices) { return picture_.go_on(*run_, vertices, snapshot.view); }
     /// Tells the observers that this was all, once.
     void end();
 
