@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 /// The session sleeps while it is paused, and wakes so often to look whether it still is.
 constexpr double kPausedInterval_s = 4e-3;
 /// Of the thread's time that pictures may take: where they are dear, there are fewer of them.
-constexpr double kPictureShare = 0.15;
+constexpr double kPictureShare = 0.15, kLongestRest_s = 0.05;
 /// Some 0.25 ms: a picture of the standard scene is full after a dozen ticks.
 constexpr std::size_t kVerticesATick = 2560, kAllVertices = static_cast<std::size_t>(-1) / 2;
 constexpr int kRealTimePriority = 10;
@@ -154,7 +154,8 @@ void Session::work() {
             if (!filling) {
                 const double ended_s = steady_s();
                 pace_.picture_us = std::exchange(spent_us, 0.0) + 1e6 * (ended_s - now_s);
-                picture_due_s = std::max(picture_due_s, ended_s + 1e-6 * pace_.picture_us / kPictureShare);
+                const double rest_s = std::min(kLongestRest_s, 1e-6 * pace_.picture_us / kPictureShare);
+                picture_due_s = std::max(picture_due_s, ended_s + rest_s);
                 publish();
             }
         } else if (now_s >= picture_due_s && !snapshots_.waiting()) {
