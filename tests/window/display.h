@@ -45,7 +45,8 @@ class Display {
         int ends[2];
         if (::pipe(ends) != 0) return;
         pid_ = start({"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0",
-                      std::to_string(width) + "x" + std::to_string(height) + "x24", "-nolisten", "tcp"},
+                      std::to_string(width) + "x" + std::to_string(height) + "x24", "-nolisten", "tcp",
+                      "-noreset"},  // else it starts anew, without whoever is connecting, when xdotool was the last to leave
                      ends[1]);
         ::close(ends[1]);
         std::FILE* pipe = ::fdopen(ends[0], "r");
