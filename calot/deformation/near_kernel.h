@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "calot/deformation/embedding.h"
 #include "calot/deformation/work.h"
 
 namespace calot::deformation {
@@ -13,6 +14,7 @@ namespace calot::deformation {
 struct CapsuleF {
     Vec3f a, ab;
     float inverse_length2, radius;
+    float reach;  ///< hexels within this of its surface are near
     bool bare;
 };
 
@@ -21,10 +23,12 @@ struct Capsules {
     std::array<CapsuleF, 16> item;
     std::size_t count = 0;
 
-    explicit Capsules(const std::vector<tissue::Capsule>& capsules);
-    float distance(const Vec3f& p, std::uint32_t which = ~0u) const;
-    /// Bits of the capsules within `reach_m` of a point.
-    std::uint32_t within(const Vec3f& p, float reach_m) const;
+    Capsules(const std::vector<tissue::Capsule>& capsules, const NearReach& reach);
+    float distance(const Vec3f& p) const;
+    /// By how much a point is out of reach of those of the capsules that `which` names; negative within.
+    float beyond_reach(const Vec3f& p, std::uint32_t which) const;
+    /// Bits of the capsules whose reach a point is at most `further_m` beyond.
+    std::uint32_t within(const Vec3f& p, float further_m) const;
     float bare_distance(const Vec3f& p) const;
 };
 
@@ -33,9 +37,9 @@ struct PlaceView {
     std::array<const float*, 3> rest_m{}, displacement_m{};
 };
 
-/// Sets near[k] to the lanes of group k whose centres are within `reach_m` of a capsule's surface, in the world. Cells
-/// that are not there may have bits too.
-void find_near_phyxels(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float reach_m,
+/// Sets near[k] to the lanes of group k whose centres are at most `further_m` beyond a capsule's reach, in the world.
+/// Cells that are not there may have bits too.
+void find_near_phyxels(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
                        std::vector<std::uint16_t>& near);
 
 }  // namespace calot::deformation

@@ -42,6 +42,9 @@ double arc_reach_m(const tissue::ElectricParameters& parameters, double peak_vol
 /// Peak voltage that the generator offers now: its limit when nothing flows, else the present one; 0 without pedal.
 double offered_peak_V(const tissue::Model& model, const tissue::State& state, const tissue::Input& input);
 
+/// How far from the surface of bare metal hexels can be that current enters, or that it could within this tick [m].
+double bare_reach_m(const tissue::Model& model, const tissue::State& state, const tissue::Input& input);
+
 /// What current enters at present: the bare gap up to which hexels count, and whether arcs burn.
 struct Reach {
     double gap_m = 0.0;
