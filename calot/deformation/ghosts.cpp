@@ -94,10 +94,12 @@ void move_ghosts(tissue::State& state, const Work& work) {
     const Images& images = work.images;
     const auto count = static_cast<std::int64_t>(images.ghost.size());
     parallel_for("deformation.ghosts", 0, count, kTaskGhosts, [&](std::int64_t low, std::int64_t high) {
-        float *x = state.displacement_m[0].data(), *y = state.displacement_m[1].data(), *z = state.displacement_m[2].data();
+        float *x = state.displacement_m[0].data(), *y = state.displacement_m[1].data(),
+              *z = state.displacement_m[2].data();
         for (auto n = static_cast<std::size_t>(low); n < static_cast<std::size_t>(high); ++n) {
             Vec3f face(work.face_m[0][n], work.face_m[1][n], work.face_m[2][n]), mean(0.0f);
-            const auto begin = static_cast<std::size_t>(images.start[n]), end = static_cast<std::size_t>(images.start[n + 1]);
+            const auto begin = static_cast<std::size_t>(images.start[n]),
+                       end = static_cast<std::size_t>(images.start[n + 1]);
             for (std::size_t k = begin; k < end; ++k) {
                 const std::int32_t p = images.mirrored[k];
                 mean += Vec3f(x[p], y[p], z[p]);
@@ -121,7 +123,8 @@ void return_ghost_impulses(tissue::State& state, const Work& work, float decay) 
               *z = state.velocity_m_per_s[2].data();
         for (auto n = static_cast<std::size_t>(low); n < static_cast<std::size_t>(high); ++n) {
             Vec3f impulse_Ns(0.0f);
-            for (auto k = static_cast<std::size_t>(images.first[n]); k < static_cast<std::size_t>(images.first[n + 1]); ++k) {
+            for (auto k = static_cast<std::size_t>(images.first[n]); k < static_cast<std::size_t>(images.first[n + 1]);
+                 ++k) {
                 const std::int32_t g = images.by[k];
                 impulse_Ns += images.share[k] * Vec3f(x[g], y[g], z[g]);
             }

@@ -34,8 +34,8 @@ void run(const char* name, Sweep sweep, const KernelView& view, Work& work) {
     });
 }
 
-/// Gradients and motion of all groups. Chunks whose neighbours belong to another thread are moved when all gradients are
-/// there.
+/// Gradients and motion of all groups. Chunks whose neighbours belong to another thread are moved when all gradients
+/// are there.
 void run_both(const KernelView& view, Work& work) {
     const Groups groups(work.groups);
     const auto count = static_cast<std::int64_t>(groups.size());
@@ -61,7 +61,8 @@ std::int64_t first_bad_cell(const Model& model, const State& state) {
     return -1;
 }
 
-/// Where a displacement is no number, neither is the stretch of its phyxel and neighbours: Group::overstretched has both.
+/// Where a displacement is no number, neither is the stretch of its phyxel and neighbours: Group::overstretched has
+/// both.
 bool all_finite(const State& state, const Work& work) {
     for (const Group& group : work.groups)
         for (std::uint32_t rest = group.overstretched; rest != 0; rest &= rest - 1) {

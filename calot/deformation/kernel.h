@@ -41,7 +41,8 @@ struct KernelView {
     const float* lame_lambda_Pa = nullptr;
     std::array<std::int64_t, 9> offset{};  ///< of the nine positive directions
     std::int64_t reach = 0;                ///< of the furthest
-    bool embedding = true;  ///< the gradient sweep stores G, also ghosts', for whoever embeds points, and how far F stretches
+    bool embedding =
+        true;  ///< the gradient sweep stores G, also ghosts', for whoever embeds points, and how far F stretches
     tissue::ElasticLaw law = tissue::ElasticLaw::stable_neo_hookean;
     float volume_stiffness_Pa = 0.0f;
     float spacing_m = 0.0f;

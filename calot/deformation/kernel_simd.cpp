@@ -6,8 +6,8 @@
 //
 //      Group::plus[d]:  ... 1 1 0 1 1 1 0 0 ...      lanes of cell i .. i + N - 1
 //
-// Sums run over faces first (their weight is applied once), then edges (weight 1). Lengths are in units of the spacing s
-// until the end. Multiplication and addition stay separate so that instruction sets with and without fused
+// Sums run over faces first (their weight is applied once), then edges (weight 1). Lengths are in units of the spacing
+// s until the end. Multiplication and addition stay separate so that instruction sets with and without fused
 // multiply-add give the same bytes.
 //
 // What a substep costs, for 16 cells: 72 loads of neighbours' values in the gradient sweep (u and kappa at 18 places),
@@ -219,7 +219,8 @@ HWY_INLINE void stress(const KernelView& k, const Lanes (&g)[9], Lanes mu, Lanes
 
 /// How far F stretches, for tear.cpp and stable_mass.h.
 template <tissue::ElasticLaw law>
-HWY_INLINE void measure_stretch(const KernelView& k, const Place& at, const Lanes (&g)[9], const Lanes (&cofactor_f)[9]) {
+HWY_INLINE void measure_stretch(const KernelView& k, const Place& at, const Lanes (&g)[9],
+                                const Lanes (&cofactor_f)[9]) {
     const D d;
     Lanes f[9];
     for (int e = 0; e < 9; ++e) f[e] = e % 4 == 0 ? all(1.0f) + g[e] : g[e];
@@ -410,7 +411,8 @@ GroupRange inner_groups(const KernelView& view, Groups all, GroupRange gradients
     if (gradients.begin > 0)
         while (inner.begin < inner.end && first(inner.begin) - view.reach < first(gradients.begin)) ++inner.begin;
     if (gradients.end < count)
-        while (inner.end > inner.begin && first(inner.end - 1) + kGroupCells + view.reach > first(gradients.end)) --inner.end;
+        while (inner.end > inner.begin && first(inner.end - 1) + kGroupCells + view.reach > first(gradients.end))
+            --inner.end;
     return inner;
 }
 

@@ -136,7 +136,8 @@ Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const
     Vec3f sum(0.0f);
     for (std::size_t row = 0; row < rows.offset.size(); ++row) {
         const std::int64_t cell = hexel + rows.offset[row];
-        const auto& row_outward = kRowOutward[row][(state.hexel_present.bits32(cell) | model.hexel_held.bits32(cell)) & 7u];
+        const auto& row_outward =
+            kRowOutward[row][(state.hexel_present.bits32(cell) | model.hexel_held.bits32(cell)) & 7u];
         sum += Vec3f(row_outward[0], row_outward[1], row_outward[2]);
     }
     Vec3f outward;

@@ -37,7 +37,8 @@ HWY_INLINE hn::Mask<D> within(const CapsuleF& capsule, V px, V py, V pz, float f
             z = hn::Sub(pz, hn::Set(d, capsule.a.z));
     V t = hn::Mul(dot(x, y, z, capsule.ab), hn::Set(d, capsule.inverse_length2));
     t = hn::Min(hn::Max(t, hn::Zero(d)), hn::Set(d, 1.0f));
-    const V dx = hn::Sub(x, hn::Mul(t, hn::Set(d, capsule.ab.x))), dy = hn::Sub(y, hn::Mul(t, hn::Set(d, capsule.ab.y))),
+    const V dx = hn::Sub(x, hn::Mul(t, hn::Set(d, capsule.ab.x))),
+            dy = hn::Sub(y, hn::Mul(t, hn::Set(d, capsule.ab.y))),
             dz = hn::Sub(z, hn::Mul(t, hn::Set(d, capsule.ab.z)));
     const V squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
     const float most = capsule.radius + (capsule.reach + further_m);

@@ -28,7 +28,8 @@ deformation::NearReach near_reach(const tissue::Model& model, const tissue::Stat
     const double contact_m = instruments::contact_reach_m(model, exchange);
     // Char of what goes sticks to the wire a hexel beyond what it touches.
     const double bare_m = electric::bare_reach_m(model, state, input) + model.hexels.spacing_m;
-    return {std::max(contact_m, bare_m), contact_m, state.grasper.held > 0 ? contact_m : std::max(contact_m, kJawReach_m)};
+    return {std::max(contact_m, bare_m), contact_m,
+            state.grasper.held > 0 ? contact_m : std::max(contact_m, kJawReach_m)};
 }
 
 /// Wall time of each stage. It is shown to people and never flows back into the state.
@@ -124,7 +125,8 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     deformation::sever_burnt_links(model, state, exchange, work.deformation);
     clock.lap(Stage::topology);
 
-    // What is seen may wait for a tick in which the field does little; who asks for the mesh before gets it as it is now.
+    // What is seen may wait for a tick in which the field does little; who asks for the mesh before gets it as it is
+    // now.
     work.surface.remove(exchange);
     if (state.tick % model.frame_ticks == kSurfaceTurn) work.surface.redo_dirty_blocks();
     clock.lap(Stage::surface);
