@@ -5,6 +5,7 @@
 
 #include "calot/base/hash.h"
 #include "calot/base/parallel.h"
+#include "calot/deformation/kernel.h"
 #include "calot/deformation/stable_mass.h"
 #include "calot/validation/elastic_rig.h"
 
