@@ -173,16 +173,19 @@ void keep(std::vector<tissue::NearHexel>& near, const tissue::NearHexel& item) {
 
 /// How far apart the displacements of any carrier and of the first can be, within `radius_m` of the phyxel's centre.
 float bound_spread(const CarrierFields& fields, int count, float radius_m) {
-    float most = 0.0f;
+    const FieldFours own = fours(fields.field[0]);
+    float offset2 = 0.0f, gradient2 = 0.0f;  // the greatest
     for (int n = 1; n < count; ++n) {
-        float offset2 = 0.0f, gradient2 = 0.0f;
-        for (std::size_t e = 0; e < CarrierFields::kComponents; ++e) {
-            const float d = fields.field[static_cast<std::size_t>(n)][e] - fields.field[0][e];
-            (e < 3 ? offset2 : gradient2) += d * d;
+        FieldFours d = fours(fields.field[static_cast<std::size_t>(n)]);
+        for (std::size_t c = 0; c < d.size(); ++c) {
+            d[c] -= own[c];
+            d[c] *= d[c];
         }
-        most = std::max(most, std::sqrt(offset2) + radius_m * std::sqrt(gradient2));
+        const Four rest = d[1] + d[2];
+        offset2 = std::max(offset2, d[0][0] + d[0][1] + d[0][2]);
+        gradient2 = std::max(gradient2, (d[0][3] + rest[0]) + (rest[1] + (rest[2] + rest[3])));
     }
-    return most;
+    return std::sqrt(offset2) + radius_m * std::sqrt(gradient2);
 }
 
 /// Half the longest diagonal of a cube of half edge `half_m` after the first carrier's deformation.
