@@ -129,6 +129,7 @@ struct FieldBody {
     int refresh = 0;
 
     explicit FieldBody(const electric::Kernels& kernels) : model(hexel_block(147'233)) {
+        model.electric.window_cells = 48;
         state = tissue::State::make(model);
         work = electric::make_work(model, kernels);
         input.pedal = true;

@@ -36,7 +36,7 @@ struct DeformationParameters {
 
 /// Electric field (section 5).
 struct ElectricParameters {
-    int window_cells = 48;            ///< edge of the cubic window about the tip, hexels
+    int window_cells = 32;            ///< edge of the cubic window about the tip, hexels
     double relative_residual = 1e-2;  ///< conjugate gradients stop here
     int max_iterations = 100;         ///< of a whole solve at once (electric::solve_now); runs spread theirs over ticks
     double contact_gap_m = 0.05e-3;   ///< bare metal this close to a hexel's surface carries current into it
