@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "calot/deformation/contact_kernel.h"
 #include "calot/deformation/contact_spread.h"
@@ -130,12 +131,14 @@ void recall(const State& state, ContactWork& contact) {
 
 // ---- What carries them
 
-/// Gives a phyxel a row.
-void need_row(ContactWork& contact, std::int64_t phyxel) {
+/// The row of a phyxel, which gets one if it has none.
+std::int32_t row_of(ContactWork& contact, std::int64_t phyxel) {
     std::int32_t& row = contact.row_of[static_cast<std::size_t>(phyxel)];
-    if (row >= 0) return;
-    row = static_cast<std::int32_t>(contact.phyxel.size());
-    contact.phyxel.push_back(static_cast<std::int32_t>(phyxel));
+    if (row < 0) {
+        row = static_cast<std::int32_t>(contact.phyxel.size());
+        contact.phyxel.push_back(static_cast<std::int32_t>(phyxel));
+    }
+    return row;
 }
 
 /// Calls visit(phyxel, share) for all phyxels that carry a point; what a ghost carries, the phyxels that it mirrors do.
@@ -153,21 +156,26 @@ void for_each_carrier(const Model& model, const Work& work, const LocalShares& l
 void fill_lines(const Model& model, Work& work) {
     ContactWork& contact = work.contact;
     const std::size_t count = contact.points.size();
-    for (std::size_t c = 0; c < count; ++c)
-        for_each_carrier(model, work, contact.local[c], [&](std::int64_t phyxel, float) { need_row(contact, phyxel); });
+    contact.shares.clear();
+    for (std::size_t c = 0; c < count; ++c) {
+        for_each_carrier(model, work, contact.local[c], [&](std::int64_t phyxel, float share) {
+            contact.shares.push_back({row_of(contact, phyxel), share});
+        });
+        contact.points[c].shares_end = static_cast<std::int32_t>(contact.shares.size());
+    }
     contact.stride = padded(static_cast<std::int32_t>(contact.phyxel.size()));
     const auto stride = static_cast<std::size_t>(contact.stride);
     std::fill_n(contact.psi.begin(), count * stride, 0.0f);
+    auto share = contact.shares.cbegin();
     for (std::size_t c = 0; c < count; ++c) {
         ContactPoint& point = contact.points[c];
         float* line = contact.psi.data() + c * stride;
         std::int32_t first = contact.stride, end = 0;
-        for_each_carrier(model, work, contact.local[c], [&](std::int64_t phyxel, float share) {
-            const std::int32_t row = contact.row_of[static_cast<std::size_t>(phyxel)];
-            line[row] += share;
-            first = std::min(first, row);
-            end = std::max(end, row + 1);
-        });
+        for (; share != contact.shares.cbegin() + point.shares_end; ++share) {
+            line[share->row] += share->share;
+            first = std::min(first, share->row);
+            end = std::max(end, share->row + 1);
+        }
         point.first = end > 0 ? first / kContactLanes * kContactLanes : 0;
         point.end = padded(end);
     }
@@ -190,6 +198,7 @@ ContactWork make_contact_work(const Model& model) {
     contact.points.reserve(kMaxPoints);
     contact.local.resize(kMaxPoints);
     contact.phyxel.reserve(rows);
+    contact.shares.reserve(kMaxPoints * kMostCarriers * std::tuple_size_v<decltype(Mirror::phyxel)>);
     contact.psi.assign(rows * kMaxPoints, 0.0f);
     contact.inverse_mass_per_kg.assign(rows, 0.0f);
     for (auto& velocity : contact.row_velocity_m_per_s) velocity.assign(rows, 0.0f);

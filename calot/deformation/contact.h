@@ -54,6 +54,7 @@ struct ContactPoint {
     Vec3f impulse_Ns{0.0f};           ///< of the last substep, where the next one starts
     std::int32_t near = -1;           ///< index into Exchange::near; of a held point into State::grasper
     std::int32_t first = 0, end = 0;  ///< range of rows outside which psi is 0; multiples of 16
+    std::int32_t shares_end = 0;      ///< of its ContactWork::shares
     std::int64_t hexel = 0;
     tissue::Instrument instrument = tissue::Instrument::hook;
 
@@ -65,6 +66,12 @@ struct ContactPoint {
 struct LocalShares {
     std::int64_t owner = -1;  ///< phyxel cell
     std::array<float, 200> share{};
+};
+
+/// What a row has of a point.
+struct RowShare {
+    std::int32_t row;
+    float share;
 };
 
 /// One tick's points. Arrays of floats are 64-byte aligned and padded with zeros to multiples of 16.
@@ -81,6 +88,7 @@ struct ContactWork {
     Array<std::int32_t> row_of;                           ///< [phyxels.cells] -1 between ticks
     bool started = false;                                 ///< a substep of this tick was solved
     std::vector<LocalShares> local;                       ///< [kMaxPoints]
+    std::vector<RowShare> shares;                         ///< of all points in turn, on the way to psi
     std::array<Vec3, tissue::kInstruments> impulse_Ns{};  ///< of each instrument on the tissue since the tick began
     std::vector<std::int32_t> owner, next, rank, kept;    ///< scratch of choosing among many, [contacts]
 };
