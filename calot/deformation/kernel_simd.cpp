@@ -345,9 +345,10 @@ HWY_INLINE void motion_of(const KernelView& k, const Place& at) {
         float* v = k.velocity_m_per_s[row] + i;
         const Lanes gravity = all(k.gravity_step_m_per_s[row]) * gravity_share;
         const Lanes velocity = decay * (load(v) + inverse_mass * impulse + gravity);
-        store(where(present, velocity) + where(ghost, impulse), v);
+        const Mask moving = hn::And(present, hn::Ge(hn::Abs(velocity.v), all(kRest_m_per_s).v));
+        store(where(moving, velocity) + where(ghost, impulse), v);
         float* u = k.displacement_m[row] + i;
-        store(load(u) + where(present, dt * velocity), u);
+        store(load(u) + where(moving, dt * velocity), u);
     }
 }
 

@@ -1,8 +1,8 @@
 #include "calot/deformation/work.h"
 
 #include "calot/deformation/integrate.h"
-#include "calot/deformation/rest.h"
 #include "calot/deformation/kernel.h"
+#include "calot/deformation/rest.h"
 #include "calot/deformation/stable_mass.h"
 #include "calot/deformation/topology.h"
 
@@ -13,9 +13,10 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     const auto cells = static_cast<std::size_t>(model.phyxels.cells);
     initialise_topology(model, state, work);
     for (auto& component : work.moment_inverse) component.assign(cells, 0.0f);
-    for (Array<float>* field : {&work.volume_m3, &work.inverse_mass_per_kg, &work.gravity_share, &work.hourglass,
-                                &work.pull_N_per_m2, &work.lame_mu_Pa, &work.lame_lambda_Pa, &work.weighing_mass_kg,
-                                &work.moving_mass_kg, &work.initial_stiffness_Nm, &work.stable_mass_kg, &work.stiffening})
+    for (Array<float>* field :
+         {&work.volume_m3, &work.inverse_mass_per_kg, &work.gravity_share, &work.hourglass, &work.pull_N_per_m2,
+          &work.lame_mu_Pa, &work.lame_lambda_Pa, &work.weighing_mass_kg, &work.moving_mass_kg,
+          &work.initial_stiffness_Nm, &work.stable_mass_kg, &work.stiffening})
         field->assign(cells, 0.0f);
     for (auto& component : work.gradient) component.assign(cells, 0.0f);
     for (auto& component : work.moment_stress) component.assign(cells, 0.0f);

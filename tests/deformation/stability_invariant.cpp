@@ -1,5 +1,8 @@
 // The explicit step is stable on whatever shape is left: leapfrog needs omega dt < 2 for the highest frequency omega.
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "calot/validation/elastic_rig.h"
@@ -100,6 +103,28 @@ TEST(Stability, OfMixedTissues) {
             wound(body, 0.1, severed, seed);
             EXPECT_LT(highest_omega_dt(body), kLimit) << "seed " << seed << ", severed " << severed;
         }
+}
+
+// Subnormal numbers are slow: without an end to ever slower motion, a tick of tissue left alone takes thirty times as
+// long after a second or two.
+TEST(Stability, TissueThatComesToRestLeavesNoSubnormalNumbers) {
+    Body body(block({6, 5, 4}, true));
+    shake(body, 0.02, 0.0, 7);
+    auto subnormal = [](const Array<float>& values) {
+        return std::count_if(values.begin(), values.end(), [](float x) { return std::fpclassify(x) == FP_SUBNORMAL; });
+    };
+    double moved = 0.0;
+    for (int k = 0; k < 4000; ++k) {
+        body.tick();
+        if (k % 100 != 99) continue;
+        for (const auto* fields : {&body.state.displacement_m, &body.state.velocity_m_per_s, &body.work.own_force_N})
+            for (const auto& component : *fields) ASSERT_EQ(subnormal(component), 0) << "tick " << k;
+        for (const auto* fields : {&body.work.gradient, &body.work.moment_stress})
+            for (const auto& component : *fields) ASSERT_EQ(subnormal(component), 0) << "tick " << k;
+        if (k == 99) moved = kinetic_energy_J(body.model, body.state, body.work);
+    }
+    EXPECT_GT(moved, 0.0);
+    EXPECT_LT(kinetic_energy_J(body.model, body.state, body.work), 1e-20 * moved);
 }
 
 }  // namespace calot::deformation::rig
