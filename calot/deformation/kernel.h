@@ -63,9 +63,11 @@ Group& group_of(Work& work, std::int64_t phyxel);
 /// Work::stiffening that counts: below it, tissue keeps its mass, and momentum with it.
 inline constexpr float kStiffer = 0.5f;
 
-/// Slower is at rest. Else tissue that nobody touches would go on to move by ever less, with numbers so small (below
-/// 1e-38) that processors take thirty times as long over them.
+/// Slower is at rest, less is no displacement (floats round a millimetre to 1e-10 m). Else tissue that nobody touches
+/// would go on to move by ever less, with numbers or products of three so small, below 1e-38, that processors take thirty
+/// times as long over them.
 inline constexpr float kRest_m_per_s = 1e-12f;
+inline constexpr float kNowhere_m = 1e-11f;
 
 using Groups = std::span<Group>;
 

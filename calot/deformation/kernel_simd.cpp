@@ -348,7 +348,8 @@ HWY_INLINE void motion_of(const KernelView& k, const Place& at) {
         const Mask moving = hn::And(present, hn::Ge(hn::Abs(velocity.v), all(kRest_m_per_s).v));
         store(where(moving, velocity) + where(ghost, impulse), v);
         float* u = k.displacement_m[row] + i;
-        store(load(u) + where(moving, dt * velocity), u);
+        const Lanes moved = load(u) + where(moving, dt * velocity);
+        store(where(hn::Ge(hn::Abs(moved.v), all(kNowhere_m).v), moved), u);
     }
 }
 
