@@ -74,7 +74,7 @@ void electric_warm_solve_scalar(benchmark::State& run) {
     solve(run, electric::reference_kernels(), 1);
 }
 BENCHMARK(electric_warm_solve)->Arg(32)->Arg(48)->Arg(64)->Unit(benchmark::kMicrosecond);
-BENCHMARK(electric_warm_solve_2_threads)->Arg(48)->Arg(64)->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(electric_warm_solve_2_threads)->Arg(96)->Unit(benchmark::kMicrosecond)->UseRealTime();
 BENCHMARK(electric_warm_solve_scalar)->Arg(48)->Unit(benchmark::kMicrosecond);
 
 void electric_cold_solve(benchmark::State& run) {

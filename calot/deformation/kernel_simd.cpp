@@ -33,9 +33,12 @@ using D = simd::Floats;
 constexpr float kFace = static_cast<float>(kFaceWeight);  ///< edges weigh 1
 using Mask = hn::Mask<D>;
 
-/// A vector of floats with ordinary arithmetic.
+/// A vector of floats with ordinary arithmetic. (Its constructors are written out: g++ makes others without the target's
+/// options, and then cannot inline them on Arm.)
 struct Lanes {
     hn::Vec<D> v;
+    HWY_INLINE Lanes() {}
+    HWY_INLINE Lanes(hn::Vec<D> value) : v(value) {}
 };
 HWY_INLINE Lanes operator+(Lanes a, Lanes b) {
     return {hn::Add(a.v, b.v)};
