@@ -83,7 +83,7 @@ int session(const SessionOptions& options) {
     const std::string page =
         options.frames >= 0 ? write_debrief(store, row.id, options.frames, options.progress) : std::string();
     if (options.progress != ProgressKind::none) print_end(*live, row, page);
-    return interrupted() ? kInterrupted : run->state().status.ok ? kDone : kFailed;
+    return interrupted() ? kInterrupted : run->figures().status.ok ? kDone : kFailed;
 }
 
 std::string write_debrief(training::Store& store, std::int64_t id, int frames, ProgressKind progress) {
