@@ -17,6 +17,8 @@
 // Multiplication and addition stay separate, as on the host.
 #pragma OPENCL FP_CONTRACT OFF
 
+typedef ulong u64;  // words of occupancy (deformation/work.h) only
+
 #define KERNEL __kernel
 #define FN static inline
 #define GLOBAL __global
@@ -86,7 +88,7 @@
 typedef unsigned int uint;
 typedef unsigned char uchar;
 typedef unsigned short ushort;
-typedef unsigned long long ulong;  // 64 bits, as in OpenCL C
+typedef unsigned long long u64;
 
 #else
 #error "neither OpenCL C nor CUDA C++"
