@@ -44,3 +44,14 @@ function(calot_room name)
         target_link_libraries(calot_${name} INTERFACE ${ROOM_NEEDS} ${ROOM_USES})
     endif()
 endfunction()
+
+# Kernel sources of a room (calot/NAME/kernels/*.cl and what they include) become text in its library.
+function(calot_embed_kernels name)
+    set(folder ${CMAKE_SOURCE_DIR}/calot/${name}/kernels)
+    set(output ${CMAKE_BINARY_DIR}/${name}_kernels.cpp)
+    file(GLOB kernels CONFIGURE_DEPENDS ${folder}/*)
+    add_custom_command(OUTPUT ${output}
+        COMMAND ${CMAKE_COMMAND} -DKERNELS=${folder} -DOUTPUT=${output} -P ${CMAKE_SOURCE_DIR}/cmake/embed_kernels.cmake
+        DEPENDS ${kernels} ${CMAKE_SOURCE_DIR}/cmake/embed_kernels.cmake VERBATIM)
+    target_sources(calot_${name} PRIVATE ${output})
+endfunction()

@@ -1,0 +1,33 @@
+#include "calot/gpu/device.h"
+
+#include <algorithm>
+
+#include "calot/gpu/drivers.h"
+
+namespace calot::gpu {
+
+std::vector<DeviceInfo> devices() {
+    std::vector<DeviceInfo> all = opencl_devices();
+    std::stable_sort(all.begin(), all.end(), [](const DeviceInfo& a, const DeviceInfo& b) {
+        return a.is_gpu != b.is_gpu ? a.is_gpu : a.memory_bytes > b.memory_bytes && a.is_gpu;
+    });
+    return all;
+}
+
+std::shared_ptr<Device> Device::open(const DeviceInfo& info) {
+    switch (info.api) {
+        case Api::opencl:
+            return open_opencl(info);
+        case Api::cuda:
+            break;
+    }
+    throw DeviceError("no driver for " + info.name);
+}
+
+const char* kernel_text(const std::string& name) {
+    for (const KernelSource& source : kernel_sources())
+        if (name == source.name) return source.text;
+    throw DeviceError("there is no kernel source named " + name);
+}
+
+}  // namespace calot::gpu
