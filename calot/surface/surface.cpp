@@ -313,6 +313,14 @@ void Surface::update_dirty_blocks(const tissue::Model&, const tissue::State&, co
     s.gathered = false;
 }
 
+void Surface::adopt(Mesh mesh, std::vector<std::int64_t> owner) {
+    impl_->mesh = std::move(mesh);
+    impl_->mesh_owner = std::move(owner);
+    impl_->gathered = true;
+    impl_->smoothed = false;
+    ++impl_->version;
+}
+
 const Mesh& Surface::rest_mesh() const {
     impl_->gather();
     return impl_->mesh;

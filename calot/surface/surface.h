@@ -26,6 +26,10 @@ class Surface {
     /// Redoes the blocks near Exchange::removed_hexels. No allocation beyond the reserve made at set-up.
     void update_dirty_blocks(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange);
 
+    /// Takes over a mesh of State::hexel_present that somebody else made, with its owners. What comes next may be another
+    /// such mesh or rebuild(), not update_dirty_blocks().
+    void adopt(Mesh mesh, std::vector<std::int64_t> owner);
+
     /// Rest mesh. Gathered from the blocks when something changed since the last call.
     const Mesh& rest_mesh() const;
     /// For every vertex of rest_mesh(): a hexel nearby (present), for attributes and for the side of a cut it is on.
