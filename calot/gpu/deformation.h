@@ -55,10 +55,11 @@ class Deformation {
     const DeviceArray<std::uint32_t>& words() const { return words_; }  ///< [WORD_PLANES][phyxels.cells]
     const DeviceArray<float>& gradient() const { return gradient_; }    ///< G, [9][phyxels.cells]
 
+    // For tests and figures.
     /// What the host keeps: bits and rest properties are current, what moves is not.
     const deformation::Work& host_work() const { return host_; }
-    DeviceArray<float>& moment_stress() { return moment_stress_; }
-    DeviceArray<float>& stiffening() { return stiffening_; }
+    const DeviceArray<float>& moment_stress() const { return moment_stress_; }  ///< M, [9][phyxels.cells]
+    const DeviceArray<float>& mass() const { return mass_; }                    ///< [MASS_PLANES][phyxels.cells]
     std::uint64_t bytes() const;
 
   private:
