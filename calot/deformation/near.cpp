@@ -20,10 +20,6 @@ namespace calot::deformation {
 
 namespace {
 
-/// Beyond the reach, how far from a capsule a phyxel's centre may be and still own a hexel within reach, in spacings:
-/// half a cell's diagonal is 0.87, stretched by up to 1.7.
-constexpr double kPhyxelMargin = 1.5;
-
 float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
     const Vec3f ap = p - capsule.a;
     const float t = std::min(1.0f, std::max(0.0f, glm::dot(ap, capsule.ab) * capsule.inverse_length2));
@@ -81,39 +77,9 @@ std::uint64_t surface_hexels(const tissue::Model& model, const Work& work, const
     return own & ~inside;
 }
 
-/// The nine rows of three cells about a hexel, along the lattice's fastest axis: where they are, and for each of the
-/// eight ways to fill one, minus the sum of the directions to the filled ones, weighted by their inverse distance.
-struct Rows {
-    std::array<std::int64_t, 9> offset;  ///< of a row's first cell
-    std::array<std::array<Vec3f, 8>, 9> outward;
-
-    explicit Rows(const Lattice& hexels) {
-        const int fast = hexels.stride.x == 1   ? 0
-                         : hexels.stride.y == 1 ? 1
-                                                : 2,
-                  b = (fast + 1) % 3, c = (fast + 2) % 3;
-        for (int row = 0; row < 9; ++row) {
-            Int3 step(0);
-            step[b] = row % 3 - 1;
-            step[c] = row / 3 - 1;
-            step[fast] = -1;
-            offset[static_cast<std::size_t>(row)] = hexels.offset(step);
-            for (int bits = 0; bits < 8; ++bits) {
-                Vec3f& sum = outward[static_cast<std::size_t>(row)][static_cast<std::size_t>(bits)];
-                sum = Vec3f(0.0f);
-                for (int k = 0; k < 3; ++k) {
-                    step[fast] = k - 1;
-                    const Vec3f direction(step);
-                    if ((bits >> k) & 1) sum -= direction / std::fmax(1.0f, glm::dot(direction, direction));
-                }
-            }
-        }
-    }
-};
-
 /// Away from the tissue at rest: against the sum of the directions to the 26 neighbours that are filled. 0 where they
 /// balance, as in a sheet one hexel thick.
-Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const Rows& rows, std::int64_t hexel) {
+Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const OutwardRows& rows, std::int64_t hexel) {
     Vec3f outward(0.0f);
     for (std::size_t row = 0; row < rows.offset.size(); ++row) {
         const std::int64_t cell = hexel + rows.offset[row];
@@ -172,7 +138,7 @@ float bound_stretch(const CarrierFields& fields, float half_m) {
 
 /// Embeds the surface hexels of one phyxel and keeps those within reach.
 void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
-                const OccupancyShifts& shifts, const Rows& rows, const Capsules& capsules, std::int64_t phyxel,
+                const OccupancyShifts& shifts, const OutwardRows& rows, const Capsules& capsules, std::int64_t phyxel,
                 const Int3& c, float reach_m) {
     const std::uint64_t surface = surface_hexels(model, work, shifts, phyxel);
     if (surface == 0) return;
@@ -219,7 +185,7 @@ void find_near(const tissue::Model& model, const tissue::State& state, tissue::E
     const OccupancyShifts shifts(model.hexels_per_edge);
     const double phyxel_reach_m = reach_m + kPhyxelMargin * model.phyxels.spacing_m;
     const Capsules capsules(exchange.capsules);
-    const Rows rows(model.hexels);
+    const OutwardRows rows(model.hexels);
     PlaceView places;
     for (std::size_t r = 0; r < 3; ++r) {
         places.rest_m[r] = work.rest_m[r].data();

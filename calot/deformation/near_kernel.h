@@ -2,6 +2,7 @@
 // Which phyxels are near the instruments: the first, wide part of the search for near hexels (near.cpp).
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,6 +27,40 @@ struct Capsules {
     /// Bits of the capsules within `reach_m` of a point.
     std::uint32_t within(const Vec3f& p, float reach_m) const;
     float bare_distance(const Vec3f& p) const;
+};
+
+/// Beyond the reach, how far from a capsule a phyxel's centre may be and still own a hexel within reach, in spacings:
+/// half a cell's diagonal is 0.87, stretched by up to 1.7.
+inline constexpr double kPhyxelMargin = 1.5;
+
+/// The nine rows of three cells about a hexel, along the lattice's fastest axis: where they are, and for each of the
+/// eight ways to fill one, minus the sum of the directions to the filled ones, weighted by their inverse distance.
+struct OutwardRows {
+    std::array<std::int64_t, 9> offset;  ///< of a row's first cell
+    std::array<std::array<Vec3f, 8>, 9> outward;
+
+    explicit OutwardRows(const Lattice& hexels) {
+        const int fast = hexels.stride.x == 1   ? 0
+                         : hexels.stride.y == 1 ? 1
+                                                : 2,
+                  b = (fast + 1) % 3, c = (fast + 2) % 3;
+        for (int row = 0; row < 9; ++row) {
+            Int3 step(0);
+            step[b] = row % 3 - 1;
+            step[c] = row / 3 - 1;
+            step[fast] = -1;
+            offset[static_cast<std::size_t>(row)] = hexels.offset(step);
+            for (int bits = 0; bits < 8; ++bits) {
+                Vec3f& sum = outward[static_cast<std::size_t>(row)][static_cast<std::size_t>(bits)];
+                sum = Vec3f(0.0f);
+                for (int k = 0; k < 3; ++k) {
+                    step[fast] = k - 1;
+                    const Vec3f direction(step);
+                    if ((bits >> k) & 1) sum -= direction / std::fmax(1.0f, glm::dot(direction, direction));
+                }
+            }
+        }
+    }
 };
 
 /// Where phyxels are: centres at rest and displacements, over the phyxel lattice.
