@@ -168,9 +168,19 @@ void Simulation::archive_effects(Archive& archive) {
 }
 
 void Simulation::world_surface(WorldSurface& out) const {
-    const surface::Mesh& mesh = work().surface.smooth_mesh();
+    const surface::Mesh& mesh = surface().smooth_mesh();
     out.position_m.resize(mesh.position_m.size());
     out.deformation_gradient.resize(mesh.position_m.size());
+    if (kept_) {
+        try {
+            backend_->embed_surface(work_, out.position_m, out.deformation_gradient);
+            return;
+        } catch (const BackendError& error) {
+            fall_back(error.what());
+            world_surface(out);
+            return;
+        }
+    }
     // While the surface changes from frame to frame, keeping weights does not pay.
     const bool changed =
         vertices_.surface_version != work_.surface.version() || vertices_.links_severed != state_.links_severed;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calot/deformation/embedding.h"
 #include "calot/simulation/simulation.h"
 #include "simulation/test_setups.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 /// What a test sees and sets of a backend that Simulation owns.
 struct Record {
-    std::int64_t steps = 0, state_fetches = 0, surface_fetches = 0;
+    std::int64_t steps = 0, state_fetches = 0, surface_fetches = 0, embeddings = 0;
     std::int64_t fail_at = -1;  ///< tick whose step fails
     bool fetch_fails = false;
 };
@@ -22,7 +23,7 @@ class Elsewhere final : public Backend {
     Elsewhere(const Setup& setup, Record& record) : setup_(setup), record_(record) {}
     std::string name() const override { return "elsewhere"; }
     bool keeps_host_current() const override { return false; }
-    void begin(const tissue::Model& model, const tissue::State& state, const Work&) override {
+    void begin(const tissue::Model& model, tissue::State& state, Work&) override {
         state_ = state;
         work_.emplace(model, state_, setup_.hook, setup_.smoke, setup_.grasper);
     }
@@ -52,6 +53,13 @@ class Elsewhere final : public Backend {
     void fetch_surface(const tissue::Model& model, const tissue::State&, Work& work) override {
         ++record_.surface_fetches;
         work.surface.rebuild(model, state_);
+    }
+
+    void embed_surface(const Work& work, std::span<Vec3f> world_m, std::span<Mat3f> deformation_gradient) override {
+        if (record_.fetch_fails) throw BackendError("it does not answer");
+        ++record_.embeddings;
+        deformation::embed_points(setup_.model, state_, work_->deformation, work.surface.smooth_mesh().position_m,
+                                  work.surface.owner(), world_m, deformation_gradient);
     }
 
   private:
@@ -95,6 +103,12 @@ TEST(Backend, FetchesOnlyWhenAsked) {
     EXPECT_EQ(record.surface_fetches, 0);
     EXPECT_EQ(run.surface().rest_mesh().position_m, on_cpu.surface().rest_mesh().position_m);
     EXPECT_EQ(record.surface_fetches, 1);
+    WorldSurface seen, expected;
+    run.world_surface(seen);
+    on_cpu.world_surface(expected);
+    EXPECT_EQ(record.embeddings, 1);
+    EXPECT_EQ(seen.position_m, expected.position_m);
+    EXPECT_EQ(record.state_fetches, 1) << "to look, only vertices move";
     run_to(run, 600);
     EXPECT_EQ(record.state_fetches, 2) << "once, to have a state to fall back to";
     EXPECT_TRUE(run.notices().empty());
@@ -126,9 +140,10 @@ TEST(Backend, NothingIsLostWhenItFails) {
     Simulation run(setup);
     run_to(run, 700);
     record.fetch_fails = true;
-    run_to(on_cpu, 1100);
-    const tissue::State& seen = run.state();
-    EXPECT_EQ(seen.tick, 700);
+    WorldSurface seen;
+    run.world_surface(seen);
+    EXPECT_EQ(seen.position_m.size(), run.surface().smooth_mesh().position_m.size());
+    EXPECT_EQ(run.state().tick, 700);
     run_to(run, 1100);
     EXPECT_EQ(tissue::hash_fields(run.state()), expected);
     EXPECT_EQ(run.notices().size(), 1u);
