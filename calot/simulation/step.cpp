@@ -1,5 +1,6 @@
 #include "calot/simulation/step.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "calot/base/parallel.h"
@@ -8,14 +9,28 @@
 #include "calot/deformation/integrate.h"
 #include "calot/deformation/tear.h"
 #include "calot/deformation/topology.h"
+#include "calot/electric/contact.h"
 #include "calot/instruments/contact.h"
 
 namespace calot::simulation {
 
 namespace {
 
-/// Hexels this close to the hook are embedded and offered to contact and current.
-constexpr double kReach_m = 2e-3;
+/// Hexels this close to a grasper that holds nothing may come between its jaws.
+constexpr double kJawReach_m = 2e-3;
+
+/// Tick of a frame in which blocks of the surface are redone.
+constexpr int kSurfaceTurn = 5;
+
+/// Which hexels are embedded and offered to contact, current, the hot wire and the jaws.
+deformation::NearReach near_reach(const tissue::Model& model, const tissue::State& state,
+                                  const tissue::Exchange& exchange, const tissue::Input& input) {
+    const double contact_m = instruments::contact_reach_m(model, exchange);
+    // Char of what goes sticks to the wire a hexel beyond what it touches.
+    const double bare_m = electric::bare_reach_m(model, state, input) + model.hexels.spacing_m;
+    return {std::max(contact_m, bare_m), contact_m,
+            state.grasper.held > 0 ? contact_m : std::max(contact_m, kJawReach_m)};
+}
 
 /// Wall time of each stage. It is shown to people and never flows back into the state.
 class StageClock {
@@ -76,7 +91,7 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
 
     StageClock clock(work.stage_us);
     place_instruments(model, state, work, input);
-    deformation::find_near(model, state, exchange, work.deformation, kReach_m);
+    deformation::find_near(model, state, exchange, work.deformation, near_reach(model, state, exchange, input));
     instruments::find_contacts(model, state, exchange);
     deformation::update_grasp(model, state, exchange,
                               {work.grasper.jaw_length_m, 0.5 * work.grasper.jaw_diameter_m, work.grasper.opening_rad});
@@ -110,7 +125,10 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     deformation::sever_burnt_links(model, state, exchange, work.deformation);
     clock.lap(Stage::topology);
 
-    work.surface.update_dirty_blocks(model, state, exchange);
+    // What is seen may wait for a tick in which the field does little; who asks for the mesh before gets it as it is
+    // now.
+    work.surface.remove(exchange);
+    if (state.tick % model.frame_ticks == kSurfaceTurn) work.surface.redo_dirty_blocks();
     clock.lap(Stage::surface);
 
     work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s, input.suction);
