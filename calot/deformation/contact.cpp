@@ -240,9 +240,12 @@ void solve_contacts(const Model& model, State& state, Work& work) {
     contact.started = true;
     spread_impulses(contact);
     for (std::size_t row = 0; row < contact.phyxel.size(); ++row)
-        for (std::size_t r = 0; r < 3; ++r)
-            state.velocity_m_per_s[r][static_cast<std::size_t>(contact.phyxel[row])] +=
-                contact.inverse_mass_per_kg[row] * contact.row_impulse_Ns[r][row];
+        for (std::size_t r = 0; r < 3; ++r) {
+            const auto phyxel = static_cast<std::size_t>(contact.phyxel[row]);
+            const float more = contact.inverse_mass_per_kg[row] * contact.row_impulse_Ns[r][row];
+            state.velocity_m_per_s[r][phyxel] += more;
+            state.displacement_m[r][phyxel] += work.substep_s * more;
+        }
 
     for (std::size_t c = 0; c < contact.points.size(); ++c) {
         ContactPoint& point = contact.points[c];

@@ -53,9 +53,8 @@ std::int64_t words_in(std::int64_t count) {
 Deformation::Deformation(std::shared_ptr<Device> device, const Model& model, Arrays& arrays)
     : device_(std::move(device)), model_(&model), arrays_(&arrays) {
     for (const auto& [kernel, name] : {std::pair{&raise_masses_, "raise_masses"},
-                                       {&velocities_, "velocities"},
+                                       {&motion_, "motion"},
                                        {&return_ghost_impulses_, "return_ghost_impulses"},
-                                       {&displacements_, "displacements"},
                                        {&move_ghosts_, "move_ghosts"},
                                        {&gradients_, "gradients"},
                                        {&apply_patches_, "apply_patches"},
@@ -84,8 +83,12 @@ Deformation::Deformation(std::shared_ptr<Device> device, const Model& model, Arr
     hexel_centres_ = centres_of(*device_, model.hexels);
     const deformation::OutwardRows rows(model.hexels);
     std::vector<float> outwards;
-    for (const auto& row : rows.outward)
-        for (const Vec3f& sum : row) outwards.insert(outwards.end(), {sum.x, sum.y, sum.z});
+    for (const auto& row : deformation::kRowOutward)
+        for (const auto& sum : row) {
+            Vec3f outward(0.0f);
+            for (int k = 0; k < 3; ++k) outward[rows.axis[k]] = sum[static_cast<std::size_t>(k)];
+            outwards.insert(outwards.end(), {outward.x, outward.y, outward.z});
+        }
     outwards_ = DeviceArray<float>(*device_, static_cast<std::int64_t>(outwards.size()));
     outwards_.upload(*device_, std::span<const float>(outwards));
 
@@ -239,16 +242,14 @@ void Deformation::advance(const State& state, const Exchange& exchange) {
                     report_);
     prepare_contacts(state, exchange, s);
     for (int substep = 0; substep < host_.substeps; ++substep) {
-        device_->launch(velocities_, active, kGroup, s, active_, active, a.phyxel_present, a.phyxel_ghost, words_,
-                        moment_stress_, own_force_, mass_, a.velocity_m_per_s);
+        device_->launch(motion_, active, kGroup, s, active_, active, a.phyxel_present, a.phyxel_ghost, words_,
+                        moment_stress_, own_force_, mass_, a.velocity_m_per_s, a.displacement_m);
         device_->launch(return_ghost_impulses_, beside, kGroup, s, beside_, beside, a.phyxel_present, words_, mass_,
-                        a.velocity_m_per_s);
+                        a.velocity_m_per_s, a.displacement_m);
         if (contact_.points > 0)
             device_->launch(solve_contacts_, kContactGroup, kContactGroup, contact_,
                             substep == 0 ? deformation::kFirstSweeps : deformation::kSweeps, device_points_, rows_,
-                            psi_, mass_, coupling_, a.velocity_m_per_s);
-        device_->launch(displacements_, active, kGroup, s, active_, active, a.phyxel_present, a.velocity_m_per_s,
-                        a.displacement_m);
+                            psi_, mass_, coupling_, a.velocity_m_per_s, a.displacement_m);
         device_->launch(move_ghosts_, ghosts, kGroup, s, ghosts_, ghosts, words_, a.displacement_m, a.velocity_m_per_s);
         run_gradients(s, active_, active, substep + 1 < host_.substeps ? 0 : 2);
     }

@@ -31,7 +31,7 @@ class Deformation {
     // be current.
 
     /// deformation::find_near: fills Exchange::near. Waits for the device.
-    void find_near(tissue::Exchange& exchange, double reach_m);
+    void find_near(tissue::Exchange& exchange, const deformation::NearReach& reach);
     /// deformation::advance, enqueued: nobody waits.
     void advance(const tissue::State& state, const tissue::Exchange& exchange);
     /// What the host wants to know of it: forces on the instruments, contact memory, slip, trouble. Waits.
@@ -71,7 +71,7 @@ class Deformation {
     GpuPatch patch_of(const tissue::State& state, std::int64_t cell) const;
     std::uint32_t mirror_word(std::int64_t cell) const;
     std::uint32_t carrier_word(const tissue::State& state, std::int64_t cell) const;
-    GpuNear near_parameters(const deformation::Capsules& capsules, double reach_m) const;
+    GpuNear near_parameters(const deformation::Capsules& capsules) const;
     void reserve_near(std::int64_t phyxels, std::int64_t hexels);
 
     std::shared_ptr<Device> device_;
@@ -80,15 +80,15 @@ class Deformation {
     deformation::Work host_;
     GpuEmbedding embedding_{};
 
-    Kernel raise_masses_, velocities_, return_ghost_impulses_, displacements_, move_ghosts_, gradients_, apply_patches_,
-        drop_hexels_, couple_points_, place_held_, solve_contacts_, embed_points_, near_phyxels_, list_phyxels_,
-        near_hexels_, list_hexels_;
+    Kernel raise_masses_, motion_, return_ghost_impulses_, move_ghosts_, gradients_, apply_patches_, drop_hexels_,
+        couple_points_, place_held_, solve_contacts_, embed_points_, near_phyxels_, list_phyxels_, near_hexels_,
+        list_hexels_;
     Scan scan_;
 
     // [planes][phyxels.cells], types.h
     DeviceArray<float> rest_, mass_, gradient_, moment_stress_, own_force_, stiffening_;
     DeviceArray<std::uint32_t> words_;
-    DeviceArray<float> phyxel_centres_, hexel_centres_, outwards_;  ///< along the axes; of OutwardRows
+    DeviceArray<float> phyxel_centres_, hexel_centres_, outwards_;  ///< along the axes; kRowOutward
     DeviceArray<std::int32_t> active_, ghosts_, beside_;            ///< cells, ascending
     DeviceArray<std::int32_t> report_;                              ///< lowest bad cell, torn phyxels: count, cells
 

@@ -29,16 +29,15 @@ void Deformation::reserve_near(std::int64_t phyxels, std::int64_t hexels) {
     scan_ = Scan(device_, std::max(phyxels, active_.size()));
 }
 
-GpuNear Deformation::near_parameters(const deformation::Capsules& capsules, double reach_m) const {
+GpuNear Deformation::near_parameters(const deformation::Capsules& capsules) const {
     GpuNear k{};
     k.embedding = embedding_;
-    k.phyxel_reach = static_cast<float>(reach_m + deformation::kPhyxelMargin * model_->phyxels.spacing_m);
-    k.reach = static_cast<float>(reach_m);
+    k.phyxel_margin = static_cast<float>(deformation::kPhyxelMargin * model_->phyxels.spacing_m);
     k.half_hexel = static_cast<float>(0.5 * model_->hexels.spacing_m);
     Vec3f low(1e9f), high(-1e9f);  // as find_near_phyxels
     for (std::size_t n = 0; n < capsules.count; ++n) {
         const deformation::CapsuleF& capsule = capsules.item[n];
-        const Vec3f b = capsule.a + capsule.ab, most(capsule.radius + k.phyxel_reach);
+        const Vec3f b = capsule.a + capsule.ab, most(capsule.radius + (capsule.reach + k.phyxel_margin));
         low = glm::min(low, glm::min(capsule.a, b) - most);
         high = glm::max(high, glm::max(capsule.a, b) + most);
     }
@@ -55,10 +54,10 @@ GpuNear Deformation::near_parameters(const deformation::Capsules& capsules, doub
     return k;
 }
 
-void Deformation::find_near(tissue::Exchange& exchange, double reach_m) {
+void Deformation::find_near(tissue::Exchange& exchange, const deformation::NearReach& reach) {
     exchange.near.clear();
     if (exchange.capsules.empty()) return;
-    const deformation::Capsules capsules(exchange.capsules);
+    const deformation::Capsules capsules(exchange.capsules, reach);
     GpuCapsules list{};
     list.count = static_cast<std::int32_t>(capsules.count);
     for (std::size_t n = 0; n < capsules.count; ++n) {
@@ -70,6 +69,7 @@ void Deformation::find_near(tissue::Exchange& exchange, double reach_m) {
         }
         to.per_length2 = from.inverse_length2;
         to.radius = from.radius;
+        to.reach = from.reach;
         to.bare = from.bare ? 1 : 0;
     }
     device_->write(capsules_.buffer(), &list, sizeof(list));
@@ -77,7 +77,7 @@ void Deformation::find_near(tissue::Exchange& exchange, double reach_m) {
     Arrays& a = *arrays_;
     std::vector<GpuNearHexel> found;
     for (;;) {
-        const GpuNear k = near_parameters(capsules, reach_m);
+        const GpuNear k = near_parameters(capsules);
         device_->launch(near_phyxels_, k.active, kGroup, k, capsules_, active_, a.phyxel_present, phyxel_centres_,
                         a.displacement_m, is_near_);
         scan_.exclusive(is_near_, k.active, near_total_);

@@ -9,13 +9,20 @@
 
 namespace calot::simulation {
 
+namespace {
+
+/// Tick of a frame in which blocks of the surface are redone.
+constexpr int kSurfaceTurn = 5;
+
+}  // namespace
+
 void step(const tissue::Model& model, tissue::State& state, Work& work, const tissue::Input& input) {
     tissue::Exchange& exchange = work.exchange;
     clear_exchange(exchange);
 
     StageClock clock(work.stage_us);
     place_instruments(model, state, work, input);
-    deformation::find_near(model, state, exchange, work.deformation, kReach_m);
+    deformation::find_near(model, state, exchange, work.deformation, near_reach(model, state, exchange, input));
     find_contacts(model, state, work);
     clock.lap(Stage::contact);
 
@@ -48,7 +55,10 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     deformation::sever_burnt_links(model, state, exchange, work.deformation);
     clock.lap(Stage::topology);
 
-    work.surface.update_dirty_blocks(model, state, exchange);
+    // What is seen may wait for a tick in which the field does little; who asks for the mesh before gets it as it is
+    // now.
+    work.surface.remove(exchange);
+    if (state.tick % model.frame_ticks == kSurfaceTurn) work.surface.redo_dirty_blocks();
     clock.lap(Stage::surface);
 
     work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s, input.suction);

@@ -1,9 +1,19 @@
 #include "calot/simulation/step_parts.h"
 
+#include <algorithm>
+
 #include "calot/deformation/grasp.h"
+#include "calot/electric/contact.h"
 #include "calot/instruments/contact.h"
 
 namespace calot::simulation {
+
+namespace {
+
+/// Hexels this close to a grasper that holds nothing may come between its jaws.
+constexpr double kJawReach_m = 2e-3;
+
+}  // namespace
 
 void clear_exchange(tissue::Exchange& exchange) {
     exchange.removed_hexels.clear();
@@ -20,6 +30,15 @@ void place_instruments(const tissue::Model& model, const tissue::State& state, W
     const tissue::GrasperInput before{state.grasper.present != 0, state.grasper.pose, state.grasper.jaw};
     instruments::place_grasper(work.grasper, grasper, before, state.grasper.held > 0, model.tick_s,
                                work.exchange.capsules);
+}
+
+deformation::NearReach near_reach(const tissue::Model& model, const tissue::State& state,
+                                  const tissue::Exchange& exchange, const tissue::Input& input) {
+    const double contact_m = instruments::contact_reach_m(model, exchange);
+    // Char of what goes sticks to the wire a hexel beyond what it touches.
+    const double bare_m = electric::bare_reach_m(model, state, input) + model.hexels.spacing_m;
+    return {std::max(contact_m, bare_m), contact_m,
+            state.grasper.held > 0 ? contact_m : std::max(contact_m, kJawReach_m)};
 }
 
 void find_contacts(const tissue::Model& model, tissue::State& state, Work& work) {

@@ -3,12 +3,10 @@
 
 #include <chrono>
 
+#include "calot/deformation/embedding.h"
 #include "calot/simulation/step.h"
 
 namespace calot::simulation {
-
-/// Hexels this close to the hook are embedded and offered to contact and current.
-inline constexpr double kReach_m = 2e-3;
 
 /// Wall time of each stage. It is shown to people and never flows back into the state.
 class StageClock {
@@ -31,6 +29,9 @@ class StageClock {
 void clear_exchange(tissue::Exchange& exchange);
 /// Capsules of hook and grasper, and how far its jaw closes.
 void place_instruments(const tissue::Model& model, const tissue::State& state, Work& work, const tissue::Input& input);
+/// Which hexels are embedded and offered to contact, current, the hot wire and the jaws.
+deformation::NearReach near_reach(const tissue::Model& model, const tissue::State& state,
+                                  const tissue::Exchange& exchange, const tissue::Input& input);
 /// Contacts of the near hexels, and what the grasper takes hold of.
 void find_contacts(const tissue::Model& model, tissue::State& state, Work& work);
 /// After the tissue has moved: poses for the next tick's velocities, forces.

@@ -90,10 +90,10 @@ FN void add_exactly(GLOBAL float* sum, GLOBAL float* rest, float value) {
     *sum = total;
 }
 
-/// Makes velocities obey the contacts: `sweeps` times over all points in their order.
+/// Makes velocities obey the contacts, `sweeps` times over all points in their order, and displacements with them.
 KERNEL void solve_contacts(struct GpuContact k, int sweeps, GLOBAL struct GpuContactPoint* points,
                            GLOBAL const int* phyxel, GLOBAL const float* psi, GLOBAL const float* mass,
-                           GLOBAL const float* coupling, GLOBAL float* v) {
+                           GLOBAL const float* coupling, GLOBAL float* v, GLOBAL float* u) {
     SHARED float partial[CONTACT_GROUP];
     SHARED float velocity[3 * MOST_POINTS];
     SHARED float impulse[3 * MOST_POINTS];
@@ -157,7 +157,11 @@ KERNEL void solve_contacts(struct GpuContact k, int sweeps, GLOBAL struct GpuCon
             for (int r = 0; r < 3; ++r) sum[r] += psi[c * k.stride + row] * impulse[r * MOST_POINTS + c];
         }
         const float inverse_mass = mass[MASS_INVERSE * k.cells + phyxel[row]];
-        for (int r = 0; r < 3; ++r) v[r * k.cells + phyxel[row]] += inverse_mass * sum[r];
+        for (int r = 0; r < 3; ++r) {
+            const float gain = inverse_mass * sum[r];
+            v[r * k.cells + phyxel[row]] += gain;
+            u[r * k.cells + phyxel[row]] += k.substep_s * gain;
+        }
     }
 
     if (item < k.points) {

@@ -6,8 +6,8 @@
 // rounds as the host does gives the same bits). An item is a phyxel or ghost of the list `active`; what a tick calls:
 //
 //   raise_masses                                           once
-//   velocities, return_ghost_impulses, (contact.cl),
-//   displacements, move_ghosts, gradients                  every substep
+//   motion, return_ghost_impulses, (contact.cl),
+//   move_ghosts, gradients                                 every substep
 
 #define FACE_WEIGHT 27.0f  // deformation/links.h; edges weigh 1
 #define STIFFER 0.5f       // deformation/kernel.h
@@ -217,19 +217,19 @@ KERNEL void gradients(struct GpuSweep s, GLOBAL const int* cells, int count, int
     float stiffer;
     const float stretch = find_stretch(s, g, cofactor_f, &stiffer);
     stiffening[i] = stiffer;
-    if (whole == 2 && is_present && stretch > s.most_squared_stretch) {
+    if (whole == 2 && is_present && !(stretch <= s.most_squared_stretch)) {
         const int place = ATOMIC_ADD(report + 1, 1);
         if (place < room) report[2 + place] = i;
     }
 }
 
-// ---- Forces and velocities
+// ---- Forces and motion
 
-/// Velocities after a substep of elastic forces, gravity and damping. Ghosts get the impulse [N s] of the forces on them
-/// instead.
-KERNEL void velocities(struct GpuSweep s, GLOBAL const int* active, int count, GLOBAL const uint* present,
+/// Velocities and displacements after a substep of elastic forces, gravity and damping. Ghosts get the impulse [N s] of
+/// the forces on them instead of a velocity.
+KERNEL void motion(struct GpuSweep s, GLOBAL const int* active, int count, GLOBAL const uint* present,
                        GLOBAL const uint* ghost, GLOBAL const uint* words, GLOBAL const float* moment_stress,
-                       GLOBAL const float* own_force, GLOBAL const float* mass, GLOBAL float* v) {
+                       GLOBAL const float* own_force, GLOBAL const float* mass, GLOBAL float* v, GLOBAL float* u) {
     const int item = GLOBAL_ID;
     if (item >= count) return;
     const int i = active[item], n = s.phyxels.cells;
@@ -272,30 +272,36 @@ KERNEL void velocities(struct GpuSweep s, GLOBAL const int* active, int count, G
     for (int r = 0; r < 3; ++r) {
         const float impulse = s.substep_s * (s.phyxels.spacing_m * sum[r] + own_force[r * n + i]);
         const float gravity = s.gravity_step_m_per_s[r] * gravity_share;
-        v[r * n + i] = is_present ? s.decay * (v[r * n + i] + inverse_mass * impulse + gravity) : impulse;
+        const float velocity = s.decay * (v[r * n + i] + inverse_mass * impulse + gravity);
+        v[r * n + i] = is_present ? velocity : impulse;
+        if (is_present) u[r * n + i] += s.substep_s * velocity;
     }
 }
 
 // ---- Ghosts (deformation/ghosts.h)
 
-/// Hands the impulses in the ghosts' velocities on to the phyxels that they mirror. `beside`: phyxels beside ghosts.
+/// Hands the impulses in the ghosts' velocities on to the phyxels that they mirror, which have moved. `beside`: phyxels beside ghosts.
 KERNEL void return_ghost_impulses(struct GpuSweep s, GLOBAL const int* beside, int count, GLOBAL const uint* present,
-                                  GLOBAL const uint* words, GLOBAL const float* mass, GLOBAL float* v) {
+                                  GLOBAL const uint* words, GLOBAL const float* mass, GLOBAL float* v,
+                                  GLOBAL float* u) {
     const int item = GLOBAL_ID;
     if (item >= count) return;
     const int i = beside[item], n = s.phyxels.cells;
     if (!test_bit(present, i)) return;
-    float own[3];
-    for (int r = 0; r < 3; ++r) own[r] = v[r * n + i];
+    float impulse[3] = {0.0f, 0.0f, 0.0f};
     for (int place = 0; place < NEIGHBOURHOOD; ++place) {
         const int k = s.ascending[place], ghost = i + neighbour_offset(s.phyxels, k);
         const uint mirrored = words[WORD_MIRROR * n + ghost];
         if (((mirrored >> (26 - k)) & 1u) == 0u) continue;
-        const float share = -s.decay / (float)POPCOUNT(mirrored);
-        const float gain = share * mass[MASS_INVERSE * n + i];
-        for (int r = 0; r < 3; ++r) own[r] += gain * v[r * n + ghost];
+        const float share = 1.0f / (float)POPCOUNT(mirrored);
+        for (int r = 0; r < 3; ++r) impulse[r] += share * v[r * n + ghost];
     }
-    for (int r = 0; r < 3; ++r) v[r * n + i] = own[r];
+    const float gain = -s.decay * mass[MASS_INVERSE * n + i];
+    for (int r = 0; r < 3; ++r) {
+        const float more = gain * impulse[r];
+        v[r * n + i] += more;
+        u[r * n + i] += s.substep_s * more;
+    }
 }
 
 /// Displacements of ghosts from those of the phyxels that they mirror; their velocities are zero.
@@ -314,18 +320,9 @@ KERNEL void move_ghosts(struct GpuSweep s, GLOBAL const int* ghosts, int count, 
         FOR_EACH_FACE(ADD)
         FOR_EACH_EDGE(ADD)
 #undef ADD
-        u[r * n + i] = mirrored != 0u ? -(share * sum) : 0.0f;
+        u[r * n + i] = 0.0f - share * sum;
         v[r * n + i] = 0.0f;
     }
-}
-
-KERNEL void displacements(struct GpuSweep s, GLOBAL const int* active, int count, GLOBAL const uint* present,
-                          GLOBAL const float* v, GLOBAL float* u) {
-    const int item = GLOBAL_ID;
-    if (item >= count) return;
-    const int i = active[item], n = s.phyxels.cells;
-    if (!test_bit(present, i)) return;
-    for (int r = 0; r < 3; ++r) u[r * n + i] += s.substep_s * v[r * n + i];
 }
 
 // ---- What changed on the host

@@ -20,13 +20,13 @@ FN float distance_to(struct GpuCapsule c, const float* p) {
     return SQRT(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) - c.radius;
 }
 
-FN int is_within(struct GpuCapsule c, const float* p, float reach) {
+FN int is_within(struct GpuCapsule c, const float* p, float further) {
     float d[3];
     for (int r = 0; r < 3; ++r) d[r] = p[r] - c.a[r];
     float t = d[0] * c.ab[0] + d[1] * c.ab[1] + d[2] * c.ab[2];
     t = FMIN(FMAX(t * c.per_length2, 0.0f), 1.0f);
     for (int r = 0; r < 3; ++r) d[r] = d[r] - t * c.ab[r];
-    const float most = c.radius + reach;
+    const float most = c.radius + (c.reach + further);
     return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= most * most;
 }
 
@@ -47,7 +47,7 @@ KERNEL void near_phyxels(struct GpuNear k, GLOBAL const struct GpuCapsules* caps
             if (p[r] < k.low[r] || p[r] > k.high[r]) inside = 0;
         }
         if (inside)
-            for (int c = 0; c < capsules->count; ++c) near |= is_within(capsules->item[c], p, k.phyxel_reach);
+            for (int c = 0; c < capsules->count; ++c) near |= is_within(capsules->item[c], p, k.phyxel_margin);
     }
     is_near[item] = near;
 }
@@ -122,9 +122,9 @@ KERNEL void near_hexels(struct GpuNear k, GLOBAL const struct GpuCapsules* capsu
                     for (int n = 0; n < capsules->count; ++n) {
                         const float d = distance_to(capsules->item[n], moved);
                         distance = FMIN(distance, d);
+                        within |= d - capsules->item[n].reach <= 0.0f;
                         if (capsules->item[n].bare) bare = FMIN(bare, d);
                     }
-                    within = distance <= k.reach;
                     if (within) {
                         float outward[3] = {0.0f, 0.0f, 0.0f}, F[9], turned[3];
                         hexel.hexel = cell_index(k.embedding.hexels, at[0], at[1], at[2]);

@@ -89,6 +89,7 @@ struct GpuContact {
 struct GpuCapsule {
     float a[3], ab[3];
     float per_length2, radius;
+    float reach;  ///< hexels within this of its surface are near
     int bare;
 };
 #define MOST_CAPSULES 16
@@ -101,7 +102,8 @@ struct GpuCapsules {
 struct GpuNear {
     struct GpuEmbedding embedding;
     float low[3], high[3];  ///< about all capsules, for centres of phyxels
-    float phyxel_reach, reach, half_hexel;
+    float phyxel_margin;    ///< how much further phyxels are looked for
+    float half_hexel;
     int row_offset[9];  ///< rows of three hexels about one
     int active;         ///< phyxels and ghosts
     int most_phyxels, most_hexels;
