@@ -116,7 +116,7 @@ void Heat::enqueue_step(const tissue::Model& model, tissue::State& state, const 
     Arrays& a = *arrays_;
     const GpuHeatStep step = make_step(model, exchange.joule);
     const std::int64_t items = std::int64_t{step.blocks} * HEAT_BLOCK;
-    d.launch(kernels_.active, step.blocks, HEAT_BLOCK, step, a.hexel_initial, warm_, active_, counts_, sums_, totals_);
+    d.launch(kernels_.active, step.blocks, HEAT_BLOCK, step, a.hexel_initial, warm_, active_, totals_);
 
     touch_list_.clear();
     contact_ = thermal::find_wire_contact(model, state, exchange);

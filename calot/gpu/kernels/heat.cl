@@ -4,10 +4,10 @@
 #include "sum_group.h"
 
 // A heat step (docs/physics.md section 6), the same operations in the same order as thermal/kernel_scalar.cpp. A
-// work-group is a block of HEAT_BLOCK consecutive cells; those at rest end at once.
+// work-group is a block of HEAT_BLOCK consecutive cells.
 //
-// (PoCL wants nothing that depends on the item on the way to a return before barriers: what such blocks leave behind is
-// heat_active's to write.)
+// Work-groups of blocks at rest only add up noughts. (They could return at once, but PoCL 3.1 makes wrong code of
+// returns before barriers.)
 //
 //     heat_active   which blocks take part          heat_settle   boiling, temperature, damage
 //     heat_tip      the hot wire                    heat_totals   sums, and where lists go
@@ -49,7 +49,7 @@ FN int in_joule_box(struct GpuHeatStep step, int block) {
 
 /// Blocks with tissue that are warm, beside a warm one, or get Joule heat.
 KERNEL void heat_active(struct GpuHeatStep step, GLOBAL const uint* initial, GLOBAL const int* warm, GLOBAL int* active,
-                        GLOBAL int* counts, GLOBAL float* sums, GLOBAL struct GpuHeatTotals* totals) {
+                        GLOBAL struct GpuHeatTotals* totals) {
     const int block = GLOBAL_ID;
     if (block == 0) {
         totals->bad_hexel = HEAT_NONE;
@@ -67,8 +67,6 @@ KERNEL void heat_active(struct GpuHeatStep step, GLOBAL const uint* initial, GLO
         }
     }
     active[block] = on != 0 && populated(step, initial, block);
-    counts[block] = 0;
-    for (int s = 0; s < 2 * HEAT_SUMS; ++s) sums[block * 2 * HEAT_SUMS + s] = 0.0f;
 }
 
 /// By one group: what the hot wire gives the hexels that it touches (thermal/tip.h).
@@ -147,9 +145,8 @@ KERNEL void heat_flow(struct GpuHeatStep step, GLOBAL const struct GpuHeatMateri
                       GLOBAL const float* joule_S_per_m3, GLOBAL float* enthalpy_J_per_m3, GLOBAL float* sums) {
     SHARED float scratch[3 * 2 * SUM_GROUP];
     const int item = LOCAL_ID, block = GROUP_ID, i = step.first + GLOBAL_ID;
-    if (active[block] == 0) return;
     float delivered = 0.0f, perfused = 0.0f, surface = 0.0f, surface_rest = 0.0f;
-    if (i < step.last && test_bit(present, i)) {
+    if (active[block] != 0 && i < step.last && test_bit(present, i)) {
         const int m = material[i];
         const float own_K = temperature_K[i], start = enthalpy_J_per_m3[i];
         const float before = start + joule_heat(step, joule_S_per_m3, i);
@@ -226,10 +223,9 @@ KERNEL void heat_settle(struct GpuHeatStep step, GLOBAL const struct GpuHeatMate
     SHARED float scratch[2 * 2 * SUM_GROUP];
     SHARED int counted[HEAT_BLOCK];
     const int item = LOCAL_ID, block = GROUP_ID, i = step.first + GLOBAL_ID;
-    if (active[block] == 0) return;
     float gas = 0.0f, latent = 0.0f;
     int found = 0;
-    if (i < step.last && test_bit(present, i)) {
+    if (active[block] != 0 && i < step.last && test_bit(present, i)) {
         GLOBAL const struct GpuHeatMaterial* m = materials + material[i];
         float enthalpy = enthalpy_J_per_m3[i], water = water_kg_per_m3[i];
         if (!(FABS(enthalpy) < 1e30f)) ATOMIC_MIN(&totals->bad_hexel, i);
@@ -352,9 +348,8 @@ KERNEL void heat_list(struct GpuHeatStep step, GLOBAL const struct GpuHeatMateri
                       int boiled_room) {
     SHARED int scan[SCAN_GROUP];
     const int item = LOCAL_ID, block = GROUP_ID, i = step.first + GLOBAL_ID;
-    if ((counts[block] & (COUNT_WARM - 1)) == 0) return;
     int spent = 0, boiled = 0;
-    if (i < step.last && test_bit(present, i)) {
+    if ((counts[block] & (COUNT_WARM - 1)) != 0 && i < step.last && test_bit(present, i)) {
         spent = is_spent(step, materials + material[i], enthalpy_J_per_m3[i], water_kg_per_m3[i]);
         boiled = steam_kg_per_m3[i] > 0.0f;
     }
