@@ -65,7 +65,9 @@ int session(const SessionOptions& options) {
         live.emplace(store, start, from);
         run = std::move(from.run);
     } else {
-        setup = std::make_shared<simulation::Setup>(build_setup(load_scene(options.scene)));
+        const auto made = std::make_shared<simulation::Setup>(build_setup(load_scene(options.scene)));
+        use_backend(options.backend, *made);
+        setup = made;
         run = std::make_unique<simulation::Simulation>(setup);
         live.emplace(store, start, *run);
     }
