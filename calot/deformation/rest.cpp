@@ -233,19 +233,39 @@ void for_each_neighbour_cell(const Lattice& phyxels, std::int64_t phyxel, const 
 
 }  // namespace
 
-void refresh_phyxel(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
-    store_rest(model, state, work, phyxel);
-    for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
-        if (model.phyxel_ghost.test(other)) store_rest(model, state, work, other);
-    });
-    store_mass(model, state, work, phyxel);
-    for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
-        if (state.phyxel_present.test(other)) store_mass(model, state, work, other);
-        if (!model.phyxel_ghost.test(other)) return;
-        const Mirror& mirror = find_mirror(work, other);
-        for (int k = 0; k < mirror.count; ++k)
-            store_mass(model, state, work, mirror.phyxel[static_cast<std::size_t>(k)]);
-    });
+void refresh_phyxels(const Model& model, const State& state, Work& work, std::span<const std::int64_t> phyxels) {
+    // Each cell once, however many of its neighbours changed. Work::search_stack is free here, Work::changed clear.
+    std::size_t count = 0;
+    auto note = [&](std::int64_t cell) {
+        if (work.changed.test(cell)) return;
+        work.changed.set(cell);
+        work.search_stack[count++] = cell;
+    };
+    auto for_each_noted = [&](const auto& visit) {
+        for (std::size_t k = 0; k < count; ++k) {
+            work.changed.clear(work.search_stack[k]);
+            visit(work.search_stack[k]);
+        }
+        count = 0;
+    };
+    for (const std::int64_t phyxel : phyxels) {
+        note(phyxel);
+        for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
+            if (model.phyxel_ghost.test(other)) note(other);
+        });
+    }
+    for_each_noted([&](std::int64_t cell) { store_rest(model, state, work, cell); });
+    // Masses depend on the rest properties of neighbours.
+    for (const std::int64_t phyxel : phyxels) {
+        note(phyxel);
+        for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
+            if (state.phyxel_present.test(other)) note(other);
+            if (!model.phyxel_ghost.test(other)) return;
+            const Mirror& mirror = find_mirror(work, other);
+            for (int k = 0; k < mirror.count; ++k) note(mirror.phyxel[static_cast<std::size_t>(k)]);
+        });
+    }
+    for_each_noted([&](std::int64_t cell) { store_mass(model, state, work, cell); });
 }
 
 void refresh_all_phyxels(const Model& model, const State& state, Work& work) {

@@ -7,7 +7,7 @@
 
 namespace calot::deformation {
 
-/// In double precision; refresh_phyxel stores it in Work as floats.
+/// In double precision; refresh_phyxels stores it in Work as floats.
 struct PhyxelRest {
     Mat3 moment_inverse_per_m2{0.0};  ///< A^-1; zero where A is (nearly) singular
     double volume_m3 = 0.0;           ///< v, effective; 0 for ghosts

@@ -68,7 +68,7 @@ GpuPatch Deformation::patch_of(const State& state, std::int64_t cell) const {
 }
 
 void Deformation::patch_about(const State& state, const std::vector<std::int64_t>& changed) {
-    // What refresh_phyxel writes: the phyxel, ghosts beside it, masses of its neighbours and of what such ghosts
+    // What refresh_phyxels writes: the phyxel, ghosts beside it, masses of its neighbours and of what such ghosts
     // mirror; and whose points it carries.
     patched_.clear();
     for (const std::int64_t phyxel : changed)
@@ -126,8 +126,7 @@ void Deformation::tear_and_sever(State& state, Exchange& exchange) {
     deformation::sever_links(*model_, state, exchange, host_);
     drop_fallen(state, exchange, burnt, debris_J);
     if (exchange.changed_phyxels.empty()) return;
-    for (const std::int64_t phyxel : exchange.changed_phyxels)
-        deformation::refresh_phyxel(*model_, state, host_, phyxel);
+    deformation::refresh_phyxels(*model_, state, host_, exchange.changed_phyxels);
     patch_about(state, exchange.changed_phyxels);
 }
 
