@@ -238,7 +238,7 @@ void sever_links(const tissue::Model& model, tissue::State& state, tissue::Excha
 void sever_burnt_links(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work) {
     sever_links(model, state, exchange, work);
     if (exchange.changed_phyxels.empty()) return;
-    for (const std::int64_t phyxel : exchange.changed_phyxels) refresh_phyxel(model, state, work, phyxel);
+    refresh_phyxels(model, state, work, exchange.changed_phyxels);
     update_gradients_about(model, state, work, exchange.changed_phyxels);
 }
 

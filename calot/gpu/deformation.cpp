@@ -10,6 +10,7 @@
 #include "calot/deformation/grasp.h"
 #include "calot/deformation/kernel.h"
 #include "calot/deformation/neighbours.h"
+#include "calot/deformation/rest.h"
 
 namespace calot::gpu {
 
@@ -56,9 +57,7 @@ Deformation::Deformation(std::shared_ptr<Device> device, const Model& model, Arr
                                        {&motion_, "motion"},
                                        {&return_ghost_impulses_, "return_ghost_impulses"},
                                        {&move_ghosts_, "move_ghosts"},
-                                       {&gradients_, "gradients"},
-                                       {&apply_patches_, "apply_patches"},
-                                       {&drop_hexels_, "drop_hexels"}})
+                                       {&gradients_, "gradients"}})
         *kernel = device_->kernel("deformation", name);
     for (const auto& [kernel, name] : {std::pair{&couple_points_, "couple_points"},
                                        {&place_held_, "place_held"},
@@ -69,6 +68,14 @@ Deformation::Deformation(std::shared_ptr<Device> device, const Model& model, Arr
                                        {&near_hexels_, "near_hexels"},
                                        {&list_hexels_, "list_hexels"}})
         *kernel = device_->kernel("near", name);
+    for (const auto& [kernel, name] : {std::pair{&keep_main_, "keep_main"},
+                                       {&sever_faces_, "sever_faces"},
+                                       {&sever_edges_, "sever_edges"},
+                                       {&drop_phyxels_, "drop_phyxels"},
+                                       {&drop_hexels_, "drop_hexels"}})
+        *kernel = device_->kernel("topology", name);
+    refresh_rest_ = device_->kernel("rest", "refresh_rest");
+    refresh_masses_ = device_->kernel("rest", "refresh_masses");
     embed_points_ = device_->kernel("embedding", "embed_points");
 
     const std::int64_t cells = model.phyxels.cells;
@@ -136,6 +143,15 @@ void Deformation::take(const State& state) {
     put(rest_, REST_HOURGLASS, host_.hourglass);
     put(rest_, REST_MU, host_.lame_mu_Pa);
     put(rest_, REST_LAMBDA, host_.lame_lambda_Pa);
+    put(rest_, REST_PULL, host_.pull_N_per_m2);
+    put(rest_, REST_SHARE, host_.volume_share);
+    put(rest_, REST_STIFFNESS, host_.initial_stiffness_Nm);
+    Array<float> trace(static_cast<std::size_t>(cells), 0.0f);
+    for (std::int64_t p = model_->phyxels.first; p < model_->phyxels.last; ++p)
+        if (model_->phyxel_initial.test(p))
+            trace[static_cast<std::size_t>(p)] = static_cast<float>(deformation::initial_trace(*model_, p));
+    put(rest_, REST_TRACE, trace);
+    upload_numbers();
     put(mass_, MASS_WEIGHING, host_.weighing_mass_kg);
     put(mass_, MASS_MOVING, host_.moving_mass_kg);
     put(mass_, MASS_STABLE, host_.stable_mass_kg);
@@ -308,14 +324,20 @@ void Deformation::embed_points(std::span<const Vec3f> rest_m, std::span<const st
 
 std::uint64_t Deformation::bytes() const {
     std::uint64_t total = 0;
-    for (const Buffer* buffer :
-         {&rest_.buffer(),          &mass_.buffer(),           &gradient_.buffer(),      &moment_stress_.buffer(),
-          &own_force_.buffer(),     &stiffening_.buffer(),     &words_.buffer(),         &phyxel_centres_.buffer(),
-          &hexel_centres_.buffer(), &outwards_.buffer(),       &active_.buffer(),        &ghosts_.buffer(),
-          &beside_.buffer(),        &report_.buffer(),         &device_points_.buffer(), &rows_.buffer(),
-          &psi_.buffer(),           &coupling_.buffer(),       &capsules_.buffer(),      &is_near_.buffer(),
-          &near_list_.buffer(),     &near_counts_.buffer(),    &near_mask_.buffer(),     &near_found_.buffer(),
-          &near_out_.buffer(),      &device_patches_.buffer(), &cells_.buffer(),         &values_.buffer()})
+    for (const Buffer* buffer : {&rest_.buffer(),          &mass_.buffer(),
+                                 &gradient_.buffer(),      &moment_stress_.buffer(),
+                                 &own_force_.buffer(),     &stiffening_.buffer(),
+                                 &words_.buffer(),         &phyxel_centres_.buffer(),
+                                 &hexel_centres_.buffer(), &outwards_.buffer(),
+                                 &active_.buffer(),        &ghosts_.buffer(),
+                                 &beside_.buffer(),        &report_.buffer(),
+                                 &device_points_.buffer(), &rows_.buffer(),
+                                 &psi_.buffer(),           &coupling_.buffer(),
+                                 &capsules_.buffer(),      &is_near_.buffer(),
+                                 &near_list_.buffer(),     &near_counts_.buffer(),
+                                 &near_mask_.buffer(),     &near_found_.buffer(),
+                                 &near_out_.buffer(),      &numbers_,
+                                 &cells_.buffer(),         &values_.buffer()})
         total += buffer->bytes();
     return total;
 }

@@ -2,11 +2,10 @@
 // Deformation on a device: what calot/deformation does to the phyxels of a running simulation, kernel by kernel the
 // same arithmetic in the same order. Where a device rounds as the host does, results are the same to the bit.
 //
-// Phyxels live on the device: displacement, velocity, gradients, masses that move. Over the bus go, in every tick, the
-// near hexels and the contact points with the shares of what carries them. The host keeps the bits (hexels, phyxels,
-// links: tissue::State's) and the rest properties that follow from them: which links burning severs, what falls and
-// what a changed phyxel is at rest concerns a few cells a tick, follows chains of cells, and is worked out by the
-// deformation room itself; the device takes the changed cells over (GpuPatch).
+// Phyxels live on the device: displacement, velocity, gradients, rest properties, masses, links. Over the bus go, in
+// every tick, the near hexels and the contact points with the shares of what carries them; where something burns, which
+// phyxels it was. The host keeps the bits (hexels, phyxels, links: tissue::State's) by the same rules, and with them
+// searches what hangs on nothing any more: that follows chains of cells, and a device would have to be waited for.
 
 #include <memory>
 #include <span>
@@ -66,9 +65,14 @@ class Deformation {
     GpuSweep sweep() const;
     void prepare_contacts(const tissue::State& state, const tissue::Exchange& exchange, const GpuSweep& sweep);
     void run_gradients(const GpuSweep& sweep, const DeviceArray<std::int32_t>& cells, std::int64_t count, int whole);
-    void drop_fallen(tissue::State& state, const tissue::Exchange& exchange, std::size_t burnt, double debris_J);
-    void patch_about(const tissue::State& state, const std::vector<std::int64_t>& changed);
-    GpuPatch patch_of(const tissue::State& state, std::int64_t cell) const;
+    GpuTopology topology() const;
+    void upload_numbers();
+    void drop_hexels(std::span<const std::int64_t> hexels, std::size_t first);
+    void sever(std::span<const std::int64_t> removed);
+    void drop_phyxels(const tissue::State& state, std::span<const std::int64_t> changed);
+    void refresh(std::span<const std::int64_t> changed);
+    /// Into scratch.
+    const DeviceArray<std::int32_t>& list_of(std::span<const std::int64_t> cells);
     std::uint32_t mirror_word(std::int64_t cell) const;
     std::uint32_t carrier_word(const tissue::State& state, std::int64_t cell) const;
     GpuNear near_parameters(const deformation::Capsules& capsules) const;
@@ -80,9 +84,9 @@ class Deformation {
     deformation::Work host_;
     GpuEmbedding embedding_{};
 
-    Kernel raise_masses_, motion_, return_ghost_impulses_, move_ghosts_, gradients_, apply_patches_, drop_hexels_,
-        couple_points_, place_held_, solve_contacts_, embed_points_, near_phyxels_, list_phyxels_, near_hexels_,
-        list_hexels_;
+    Kernel raise_masses_, motion_, return_ghost_impulses_, move_ghosts_, gradients_, couple_points_, place_held_,
+        solve_contacts_, embed_points_, near_phyxels_, list_phyxels_, near_hexels_, list_hexels_, keep_main_,
+        sever_faces_, sever_edges_, drop_phyxels_, drop_hexels_, refresh_rest_, refresh_masses_;
     Scan scan_;
 
     // [planes][phyxels.cells], types.h
@@ -103,10 +107,10 @@ class Deformation {
     DeviceArray<std::uint32_t> near_mask_, near_found_, near_out_;  ///< the last two: GpuNearHexel
     std::int64_t most_near_phyxels_ = 0, most_near_hexels_ = 0;
 
-    std::vector<GpuPatch> patches_;
-    std::vector<std::int64_t> patched_;  ///< scratch: cells
-    std::vector<std::int32_t> torn_;     ///< phyxels of the last tick, ascending
-    DeviceArray<std::uint32_t> device_patches_;
+    std::vector<std::int32_t> torn_;   ///< phyxels of the last tick, ascending
+    Buffer numbers_;                   ///< NUMBER_*, real
+    std::vector<std::int64_t> noted_;  ///< scratch: cells
+    std::vector<std::int32_t> list_;   ///< scratch
     DeviceArray<std::int32_t> cells_;  ///< scratch: lists of cells from the host
     DeviceArray<float> values_;        ///< scratch
 };

@@ -1,11 +1,12 @@
-// Tearing, severing and falling: the host works out what changes, the device takes it over.
+// Tearing, severing and falling, on the device and in the host's bits by the same rules.
 
 #include <algorithm>
 
 #include "calot/deformation/carriers.h"
 #include "calot/deformation/falling.h"
 #include "calot/deformation/ghosts.h"
-#include "calot/deformation/integrate.h"
+#include "calot/deformation/rest.h"
+#include "calot/deformation/stable_mass.h"
 #include "calot/deformation/topology.h"
 #include "calot/gpu/deformation.h"
 
@@ -45,75 +46,113 @@ std::uint32_t Deformation::carrier_word(const State& state, std::int64_t cell) c
     return word;
 }
 
-GpuPatch Deformation::patch_of(const State& state, std::int64_t cell) const {
-    const auto i = static_cast<std::size_t>(cell);
-    GpuPatch patch{};
-    patch.cell = static_cast<std::int32_t>(cell);
-    patch.present = state.phyxel_present.test(cell) ? 1 : 0;
-    for (std::size_t e = 0; e < 6; ++e) patch.rest[REST_MOMENT_INVERSE + e] = host_.moment_inverse[e][i];
-    for (std::size_t c = 0; c < 3; ++c) patch.rest[REST_STEP_SUM + c] = host_.step_sum[c][i];
-    patch.rest[REST_VOLUME] = host_.volume_m3[i];
-    patch.rest[REST_HOURGLASS] = host_.hourglass[i];
-    patch.rest[REST_MU] = host_.lame_mu_Pa[i];
-    patch.rest[REST_LAMBDA] = host_.lame_lambda_Pa[i];
-    patch.mass[MASS_WEIGHING] = host_.weighing_mass_kg[i];
-    patch.mass[MASS_MOVING] = host_.moving_mass_kg[i];
-    patch.mass[MASS_STABLE] = host_.stable_mass_kg[i];
-    patch.word[WORD_LINKS] = host_.link_word[i];
-    patch.word[WORD_MIRROR] = mirror_word(cell);
-    patch.word[WORD_CARRIERS] = carrier_word(state, cell);
-    patch.word[WORD_OCCUPANCY] = static_cast<std::uint32_t>(host_.occupancy[i]);
-    patch.word[WORD_OCCUPANCY + 1] = static_cast<std::uint32_t>(host_.occupancy[i] >> 32);
-    return patch;
+void Deformation::upload_numbers() {
+    std::vector<double> numbers(NUMBER_MATERIALS, 0.0);
+    numbers[NUMBER_SPACING] = model_->phyxels.spacing_m;
+    numbers[NUMBER_HEXEL_VOLUME] = model_->hexel_volume_m3();
+    numbers[NUMBER_MASS_FLOOR] = model_->deformation.mass_fraction_floor;
+    numbers[NUMBER_SINGULAR] = model_->deformation.singular_ratio;
+    numbers[NUMBER_ALPHA] = model_->deformation.hourglass_alpha;
+    numbers[NUMBER_SUBSTEP] = static_cast<double>(host_.substep_s);
+    numbers[NUMBER_ROW_SUM] = deformation::kRowSum;
+    numbers[NUMBER_SUPPORT] = deformation::kSupport;
+    for (const tissue::Material& material : model_->materials) {  // as rest.cpp has them
+        const double mu = material.youngs_modulus_Pa / (2.0 * (1.0 + material.poisson_ratio));
+        const double lambda = 2.0 * mu * material.poisson_ratio / (1.0 - 2.0 * material.poisson_ratio);
+        numbers.insert(numbers.end(), {material.density_kg_per_m3, mu, lambda});
+    }
+    if (device_->info().has_double) {
+        numbers_ = device_->make_buffer(numbers.size() * sizeof(double));
+        device_->write(numbers_, numbers.data(), numbers.size() * sizeof(double));
+    } else {
+        const std::vector<float> rounded(numbers.begin(), numbers.end());
+        numbers_ = device_->make_buffer(rounded.size() * sizeof(float));
+        device_->write(numbers_, rounded.data(), rounded.size() * sizeof(float));
+    }
 }
 
-void Deformation::patch_about(const State& state, const std::vector<std::int64_t>& changed) {
-    // What refresh_phyxel writes: the phyxel, ghosts beside it, masses of its neighbours and of what such ghosts
-    // mirror; and whose points it carries.
-    patched_.clear();
+GpuTopology Deformation::topology() const {
+    const deformation::OccupancyShifts shifts(model_->hexels_per_edge);
+    auto halves = [](std::uint64_t word, unsigned int(&to)[2]) {
+        to[0] = static_cast<unsigned int>(word);
+        to[1] = static_cast<unsigned int>(word >> 32);
+    };
+    GpuTopology t{};
+    t.hexels = arrays_->hexels;
+    t.phyxels = arrays_->phyxels;
+    t.hexels_per_edge = shifts.m;
+    t.bit_words = arrays_->phyxel_words;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        t.shift[axis] = shifts.shift[axis];
+        halves(shifts.low[axis], t.low[axis]);
+        halves(shifts.high[axis], t.high[axis]);
+    }
+    halves(shifts.all, t.all);
+    return t;
+}
+
+const DeviceArray<std::int32_t>& Deformation::list_of(std::span<const std::int64_t> cells) {
+    list_.assign(cells.begin(), cells.end());
+    reserve(*device_, cells_, list_.size());
+    cells_.upload(*device_, std::span<const std::int32_t>(list_));
+    return cells_;
+}
+
+void Deformation::drop_hexels(std::span<const std::int64_t> hexels, std::size_t first) {
+    const auto count = static_cast<std::int32_t>(hexels.size());
+    device_->launch(drop_hexels_, count, kGroup, list_of(hexels), count, static_cast<std::int32_t>(first),
+                    arrays_->hexel_present, arrays_->enthalpy_J_per_m3, values_);
+}
+
+void Deformation::sever(std::span<const std::int64_t> removed) {
+    noted_.clear();
+    for (const std::int64_t hexel : removed) noted_.push_back(model_->phyxel_of(model_->hexels.coordinates(hexel)));
+    std::sort(noted_.begin(), noted_.end());
+    noted_.erase(std::unique(noted_.begin(), noted_.end()), noted_.end());
+    const GpuTopology t = topology();
+    const auto count = static_cast<std::int32_t>(noted_.size());
+    const DeviceArray<std::int32_t>& touched = list_of(noted_);
+    Arrays& a = *arrays_;
+    device_->launch(keep_main_, count, kGroup, t, touched, count, a.hexel_present, words_, a.phyxel_present,
+                    a.displacement_m, a.velocity_m_per_s);
+    device_->launch(sever_faces_, 6 * std::int64_t{count}, kGroup, t, touched, count, a.phyxel_ghost, words_);
+    device_->launch(sever_edges_, 24 * std::int64_t{count}, kGroup, t, touched, count, a.phyxel_ghost, words_);
+}
+
+void Deformation::drop_phyxels(const State& state, std::span<const std::int64_t> changed) {
+    noted_.clear();
+    for (const std::int64_t phyxel : changed)
+        if (model_->phyxel_initial.test(phyxel) && !state.phyxel_present.test(phyxel)) noted_.push_back(phyxel);
+    const auto count = static_cast<std::int32_t>(noted_.size());
+    device_->launch(drop_phyxels_, count, kGroup, topology(), list_of(noted_), count, words_, arrays_->phyxel_present,
+                    arrays_->displacement_m, arrays_->velocity_m_per_s);
+}
+
+void Deformation::refresh(std::span<const std::int64_t> changed) {
+    // What refresh_phyxels writes: the phyxels, ghosts beside them, masses of their neighbours and of what such ghosts
+    // mirror; and whose points they carry. What did not change comes out as it was.
+    noted_.clear();
     for (const std::int64_t phyxel : changed)
         for (const std::int64_t offset : host_.neighbour_offset) {
             const std::int64_t cell = phyxel + offset;
             const bool ghost = model_->phyxel_ghost.test(cell);
             if (!ghost && !model_->phyxel_initial.test(cell)) continue;
-            patched_.push_back(cell);
+            noted_.push_back(cell);
             if (!ghost) continue;
             const deformation::Mirror& mirror = deformation::find_mirror(host_, cell);
-            patched_.insert(patched_.end(), mirror.phyxel.begin(), mirror.phyxel.begin() + mirror.count);
+            noted_.insert(noted_.end(), mirror.phyxel.begin(), mirror.phyxel.begin() + mirror.count);
         }
-    std::sort(patched_.begin(), patched_.end());
-    patched_.erase(std::unique(patched_.begin(), patched_.end()), patched_.end());
-    patches_.clear();
-    for (const std::int64_t cell : patched_) patches_.push_back(patch_of(state, cell));
-
-    const auto count = static_cast<std::int32_t>(patches_.size());
-    reserve(*device_, device_patches_, patches_.size() * sizeof(GpuPatch) / 4);
-    reserve(*device_, cells_, patched_.size());
-    device_->write(device_patches_.buffer(), patches_.data(), patches_.size() * sizeof(GpuPatch));
-    const std::vector<std::int32_t> cells(patched_.begin(), patched_.end());
-    cells_.upload(*device_, std::span<const std::int32_t>(cells));
+    std::sort(noted_.begin(), noted_.end());
+    noted_.erase(std::unique(noted_.begin(), noted_.end()), noted_.end());
+    const GpuTopology t = topology();
+    const auto count = static_cast<std::int32_t>(noted_.size());
+    const DeviceArray<std::int32_t>& cells = list_of(noted_);
     Arrays& a = *arrays_;
-    device_->launch(apply_patches_, count, kGroup, a.phyxels, device_patches_, count, a.phyxel_words, a.phyxel_ghost,
-                    rest_, mass_, words_, a.phyxel_present, a.links, a.displacement_m, a.velocity_m_per_s, gradient_,
-                    moment_stress_, own_force_);
-    run_gradients(sweep(), cells_, count, 1);
-}
-
-void Deformation::drop_fallen(State& state, const Exchange& exchange, std::size_t burnt, double debris_J) {
-    state.energy_J.debris = debris_J;
-    const std::vector<std::int32_t> fallen(exchange.removed_hexels.begin() + static_cast<std::ptrdiff_t>(burnt),
-                                           exchange.removed_hexels.end());
-    if (fallen.empty()) return;
-    reserve(*device_, cells_, fallen.size());
-    reserve(*device_, values_, fallen.size());
-    cells_.upload(*device_, std::span<const std::int32_t>(fallen));
-    const auto count = static_cast<std::int32_t>(fallen.size());
-    device_->launch(drop_hexels_, count, kGroup, cells_, count, arrays_->hexel_present, arrays_->enthalpy_J_per_m3,
-                    values_);
-    std::vector<float> enthalpy_J_per_m3(fallen.size());
-    values_.download(*device_, std::span<float>(enthalpy_J_per_m3));
-    for (const float held : enthalpy_J_per_m3)
-        state.energy_J.debris += static_cast<double>(held) * model_->hexel_volume_m3();
+    device_->launch(refresh_rest_, count, kGroup, t, cells, count, numbers_, a.phyxel_present, a.phyxel_ghost,
+                    a.hexel_material, words_, a.links, rest_, gradient_, moment_stress_, own_force_);
+    device_->launch(refresh_masses_, count, kGroup, t, cells, count, numbers_, a.phyxel_present, a.phyxel_ghost,
+                    a.hexel_material, words_, rest_, mass_);
+    run_gradients(sweep(), cells, count, 1);
 }
 
 void Deformation::tear_and_sever(State& state, Exchange& exchange) {
@@ -123,12 +162,27 @@ void Deformation::tear_and_sever(State& state, Exchange& exchange) {
     for (const std::int32_t phyxel : torn_)
         deformation::drop_hexels(*model_, state, exchange, phyxel, host_.occupancy[static_cast<std::size_t>(phyxel)]);
     torn_.clear();
-    deformation::sever_links(*model_, state, exchange, host_);
-    drop_fallen(state, exchange, burnt, debris_J);
-    if (exchange.changed_phyxels.empty()) return;
-    for (const std::int64_t phyxel : exchange.changed_phyxels)
-        deformation::refresh_phyxel(*model_, state, host_, phyxel);
-    patch_about(state, exchange.changed_phyxels);
+    exchange.changed_phyxels.clear();
+    if (exchange.removed_hexels.empty()) return;
+    const std::size_t gone = exchange.removed_hexels.size();
+    deformation::sever_links(*model_, state, exchange, host_);  // appends what falls
+    deformation::refresh_shapes(*model_, state, host_, exchange.changed_phyxels);
+
+    const std::span<const std::int64_t> removed(exchange.removed_hexels);
+    const std::size_t fallen = removed.size() - burnt;
+    reserve(*device_, values_, fallen);
+    drop_hexels(removed.subspan(burnt, gone - burnt), 0);
+    sever(removed.first(gone));
+    drop_hexels(removed.subspan(gone), gone - burnt);
+    drop_phyxels(state, exchange.changed_phyxels);
+    refresh(exchange.changed_phyxels);
+
+    state.energy_J.debris = debris_J;
+    if (fallen == 0) return;
+    std::vector<float> enthalpy_J_per_m3(fallen);
+    values_.download(*device_, std::span<float>(enthalpy_J_per_m3));
+    for (const float held : enthalpy_J_per_m3)
+        state.energy_J.debris += static_cast<double>(held) * model_->hexel_volume_m3();
 }
 
 }  // namespace calot::gpu

@@ -1,5 +1,6 @@
 // Burning, tearing and pulling while the body moves: the device's run stays the CPU's.
 
+#include "calot/instruments/hook.h"
 #include "gpu/twin.h"
 
 namespace calot::gpu {
@@ -22,22 +23,27 @@ struct Burning {
     }
 
     /// Takes hexels away from both, as heat does.
-    void burn(double radius, double share) {
-        body.exchange.removed_hexels.clear();
-        const Vec3 centre = Vec3(body.model.hexels.size) * Vec3(random.uniform(), random.uniform(), random.uniform());
-        for (std::int64_t h = body.model.hexels.first; h < body.model.hexels.last; ++h) {
-            if (!body.state.hexel_present.test(h)) continue;
-            const bool hit = glm::length(Vec3(body.model.hexels.coordinates(h)) - centre) < radius;
-            if (!hit && random.uniform() > share) continue;
-            body.exchange.removed_hexels.push_back(h);
-        }
-        twin->exchange.removed_hexels = body.exchange.removed_hexels;
-        for (const std::int64_t h : body.exchange.removed_hexels) {
+    void remove(const std::vector<std::int64_t>& hexels) {
+        body.exchange.removed_hexels.assign(hexels.begin(), hexels.end());
+        twin->exchange.removed_hexels.assign(hexels.begin(), hexels.end());
+        for (const std::int64_t h : hexels) {
             body.state.hexel_present.clear(h);
             twin->state.hexel_present.clear(h);
         }
         const BitArray& bits = twin->state.hexel_present;
         twin->arrays.hexel_present.upload(*twin->device, words_of(bits));
+    }
+    /// Those of a ball somewhere, and a share of all.
+    void burn(double radius, double share) {
+        std::vector<std::int64_t> hexels;
+        const Vec3 centre = Vec3(body.model.hexels.size) * Vec3(random.uniform(), random.uniform(), random.uniform());
+        for (std::int64_t h = body.model.hexels.first; h < body.model.hexels.last; ++h) {
+            if (!body.state.hexel_present.test(h)) continue;
+            const bool hit = glm::length(Vec3(body.model.hexels.coordinates(h)) - centre) < radius;
+            if (!hit && random.uniform() > share) continue;
+            hexels.push_back(h);
+        }
+        remove(hexels);
     }
 
     void tear_and_sever() {
@@ -105,6 +111,49 @@ TEST(GpuTopology, TearsAsTheCpuDoes) {
         if (testing::Test::HasFailure()) return;
     }
     EXPECT_GT(both.body.state.hexels_fallen, 300) << "more than a report tells at once, and what they held";
+}
+
+// A hook presses, drags and eats its way: every few ticks what its bare wire touches is gone.
+TEST(GpuTopology, DissectsAsTheCpuDoes) {
+    Burning both(block({8, 7, 4}, true), 7);
+    Body& body = both.body;
+    Twin& twin = *both.twin;
+    const instruments::HookShape hook;
+    double top_m = -1.0;
+    for (std::int64_t h = body.model.hexels.first; h < body.model.hexels.last; ++h)
+        if (body.state.hexel_present.test(h)) top_m = std::max(top_m, body.model.hexels.centre_m(h).z);
+    tissue::Pose before;
+    double hardest_N = 0.0;
+    for (int tick = 0; tick < 250; ++tick) {
+        tissue::Pose pose;
+        pose.orientation = glm::angleAxis(3.14159265358979 - 0.4, Vec3(1, 0, 0));  // shaft upwards, a little aslant
+        const double down_m = std::min(3e-3, 0.05e-3 * tick), along_m = std::max(0, tick - 80) * 0.03e-3;
+        pose.position_m = Vec3(along_m - 2e-3, 0.3 * along_m, top_m + 1e-3 - down_m);
+        if (tick == 0) before = pose;
+        for (tissue::Exchange* exchange : {&body.exchange, &twin.exchange})
+            instruments::place_hook(hook, pose, before, body.model.tick_s, exchange->capsules);
+        before = pose;
+        deformation::find_near(body.model, body.state, body.exchange, body.work, 2e-3);
+        twin.deformation.find_near(twin.exchange, 2e-3);
+        instruments::find_contacts(body.model, body.state, body.exchange);
+        instruments::find_contacts(body.model, twin.state, twin.exchange);
+        ASSERT_EQ(twin.exchange.near.size(), body.exchange.near.size()) << tick;
+        ASSERT_EQ(twin.exchange.contacts.size(), body.exchange.contacts.size()) << tick;
+        both.move();
+        std::vector<std::int64_t> burnt;
+        if (tick > 60 && tick % 3 == 0)
+            for (const tissue::NearHexel& near : body.exchange.near)
+                if (near.bare_gap_m < 0.6e-3f) burnt.push_back(near.hexel);
+        both.remove(burnt);
+        both.tear_and_sever();
+        const Vec3 force_N = body.exchange.contact_force_N;
+        EXPECT_LE(glm::length(twin.exchange.contact_force_N - force_N), 1e-6 * glm::length(force_N)) << tick;
+        hardest_N = std::max(hardest_N, glm::length(force_N));
+        if (tick % 25 == 24) both.compare(tick);
+        if (testing::Test::HasFailure()) return;
+    }
+    EXPECT_GT(hardest_N, 0.02);
+    EXPECT_GT(body.state.links_severed, 10);
 }
 
 // A grasper takes hold, pulls beyond its grip, and tears.

@@ -20,14 +20,17 @@ struct GpuLattice {
 #define REST_HOURGLASS 10
 #define REST_MU 11
 #define REST_LAMBDA 12
-#define REST_PLANES 13
+#define REST_PULL 13           // of own stress at neighbours
+#define REST_SHARE 14          // constant: volume that a phyxel stands for over that of its hexels, as sampled
+#define REST_TRACE 15          // constant: of the moment matrix as sampled, in spacings^2
+#define REST_STIFFNESS 16      // constant: v (lambda + 2 mu) of the whole phyxel
+#define REST_PLANES 17
 #define MASS_WEIGHING 0
 #define MASS_MOVING 1
 #define MASS_STABLE 2
 #define MASS_INVERSE 3
 #define MASS_GRAVITY_SHARE 4
 #define MASS_PLANES 5
-#define MASS_PATCHED 3  // the first three are given, the others follow
 
 // Words over the phyxel lattice. Bits of a neighbourhood: cell k is (k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1) away.
 #define WORD_LINKS 0    // live links
@@ -36,7 +39,17 @@ struct GpuLattice {
 #define WORD_OCCUPANCY 3  // hexels of the main component, low and high half
 #define WORD_HELD 5       // held cells of the cell
 #define WORD_PLANES 7
-#define WORD_PATCHED 5    // the first five change
+
+// Numbers of the rest properties' kernels (rest.cl): real each.
+#define NUMBER_SPACING 0
+#define NUMBER_HEXEL_VOLUME 1
+#define NUMBER_MASS_FLOOR 2
+#define NUMBER_SINGULAR 3
+#define NUMBER_ALPHA 4
+#define NUMBER_SUBSTEP 5
+#define NUMBER_ROW_SUM 6
+#define NUMBER_SUPPORT 7
+#define NUMBER_MATERIALS 8  // from here on density, mu, lambda of each
 
 /// What the sweeps of a substep have in common (deformation/kernel.h).
 struct GpuSweep {
@@ -50,13 +63,14 @@ struct GpuSweep {
     int ascending[27];  ///< cells of the neighbourhood in the order of their places in arrays
 };
 
-/// A phyxel or ghost whose rest properties changed.
-struct GpuPatch {
-    int cell;
-    int present;
-    float rest[REST_PLANES];
-    float mass[MASS_PATCHED];
-    unsigned int word[WORD_PATCHED];
+/// What topology needs to know (deformation/occupancy.h): words are a low and a high half.
+struct GpuTopology {
+    struct GpuLattice hexels, phyxels;
+    int hexels_per_edge;
+    int bit_words;  ///< of a bit array over phyxels
+    int shift[3];   ///< bits between neighbours
+    unsigned int low[3][2], high[3][2];  ///< layers with coordinate 0 and m - 1
+    unsigned int all[2];
 };
 
 /// What embedding needs to know (deformation/embedding.h).
