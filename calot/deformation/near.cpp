@@ -20,10 +20,6 @@ namespace calot::deformation {
 
 namespace {
 
-/// Beyond the reach, how far from a capsule a phyxel's centre may be and still own a hexel within reach, in spacings:
-/// half a cell's diagonal is 0.87, stretched by up to 1.7.
-constexpr double kPhyxelMargin = 1.5;
-
 float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
     const Vec3f ap = p - capsule.a;
     const float t = std::min(1.0f, std::max(0.0f, glm::dot(ap, capsule.ab) * capsule.inverse_length2));
@@ -95,44 +91,9 @@ std::uint64_t surface_hexels(const tissue::Model& model, const Work& work, const
     return own & ~inside;
 }
 
-/// What the three cells of a row about a hexel add to its outward direction, by which of them are filled: minus the sum
-/// of the directions to these, weighted by their inverse distance squared. Axes: along the row, then the two across.
-constexpr auto kRowOutward = [] {
-    std::array<std::array<std::array<float, 3>, 8>, 9> outward{};
-    for (int row = 0; row < 9; ++row)
-        for (int bits = 0; bits < 8; ++bits)
-            for (int k = 0; k < 3; ++k) {
-                if (((bits >> k) & 1) == 0) continue;
-                const int step[3] = {k - 1, row % 3 - 1, row / 3 - 1};
-                const int square = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
-                for (std::size_t axis = 0; axis < 3; ++axis)
-                    outward[static_cast<std::size_t>(row)][static_cast<std::size_t>(bits)][axis] -=
-                        static_cast<float>(step[axis]) / static_cast<float>(square > 0 ? square : 1);
-            }
-    return outward;
-}();
-
-/// The nine rows of three cells about a hexel, along the lattice's fastest axis.
-struct Rows {
-    Int3 axis;                           ///< of the lattice: along, across, across
-    std::array<std::int64_t, 9> offset;  ///< of a row's first cell
-
-    explicit Rows(const Lattice& hexels) {
-        const int fast = hexels.stride.x == 1 ? 0 : hexels.stride.y == 1 ? 1 : 2;
-        axis = {fast, (fast + 1) % 3, (fast + 2) % 3};
-        for (int row = 0; row < 9; ++row) {
-            Int3 step(0);
-            step[axis.x] = -1;
-            step[axis.y] = row % 3 - 1;
-            step[axis.z] = row / 3 - 1;
-            offset[static_cast<std::size_t>(row)] = hexels.offset(step);
-        }
-    }
-};
-
 /// Away from the tissue at rest: against the sum of the directions to the 26 neighbours that are filled. 0 where they
 /// balance, as in a sheet one hexel thick.
-Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const Rows& rows, std::int64_t hexel) {
+Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const OutwardRows& rows, std::int64_t hexel) {
     Vec3f sum(0.0f);
     for (std::size_t row = 0; row < rows.offset.size(); ++row) {
         const std::int64_t cell = hexel + rows.offset[row];
@@ -198,7 +159,7 @@ float bound_stretch(const CarrierFields& fields, float half_m) {
 
 /// Embeds the surface hexels of one phyxel and keeps those within reach.
 void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
-                const OccupancyShifts& shifts, const Rows& rows, const Capsules& capsules, std::int64_t phyxel,
+                const OccupancyShifts& shifts, const OutwardRows& rows, const Capsules& capsules, std::int64_t phyxel,
                 const Int3& c) {
     const std::uint64_t surface = surface_hexels(model, work, shifts, phyxel);
     if (surface == 0) return;
@@ -244,7 +205,7 @@ void find_near(const tissue::Model& model, const tissue::State& state, tissue::E
     if (exchange.capsules.empty()) return;
     const OccupancyShifts shifts(model.hexels_per_edge);
     const Capsules capsules(exchange.capsules, reach);
-    const Rows rows(model.hexels);
+    const OutwardRows rows(model.hexels);
     PlaceView places;
     for (std::size_t r = 0; r < 3; ++r) {
         places.rest_m[r] = work.rest_m[r].data();

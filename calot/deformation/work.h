@@ -45,7 +45,7 @@ struct Group {
 
 /// [phyxels.cells] each. Cells without a phyxel hold zeros. Ghosts have moments and gradients, but no volume or mass.
 struct Work {
-    // Rest properties, recomputed for a phyxel whenever its hexels or links change (refresh_phyxel)
+    // Rest properties, recomputed for a phyxel whenever its hexels or links change (refresh_phyxels)
     Array<std::uint64_t>
         occupancy;  ///< surviving hexels of the main component; bit x + m (y + m z), local coordinates; 0 for ghosts
     std::array<Array<float>, 6> moment_inverse;  ///< A^-1 [1/m^2], symmetric: xx xy xz yy yz zz; zero = no own stress

@@ -6,11 +6,6 @@
 //                g = 2 s1 s2 / (s1 + s2)
 //
 // All g are in S/m: a conductance is g times the spacing s of hexels.
-//
-// Return electrode at a place: beyond the window the potential is taken as that of a source at the tip and a sink at
-// r2, which ends on a disc of radius a_p:  phi ~ 1/r1 - 1/r2 + 1/a_p - 1/D  with D their distance. Then
-//     a = s (n.r1/r1^3 - n.r2/r2^3) / (1/r1 - 1/r2 + 1/a_p - 1/D), at least 0
-// which is s n.r/r^2 for a return far away.
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +13,12 @@
 
 #include "calot/base/parallel.h"
 #include "calot/electric/conductivity.h"
+#include "calot/electric/poles.h"
 #include "calot/electric/work.h"
 
 namespace calot::electric {
 
 namespace {
-
-/// What an edge of the metal adds to a face, so that a disc has the resistance of its area at every size: with 0, 0.4,
-/// 0.6, 0.8 a disc of radius a acts like one that is 0.32, 0.12, 0.06, 0.01 hexels smaller.
-constexpr double kEdge = 0.8;
 
 /// Conductivities of the window, in cells that lie on the lattice; 0 in all others.
 void gather_conductivity(const tissue::Model& model, Work& work) {
@@ -171,42 +163,10 @@ void make_faces(Work& work) {
     }
 }
 
-/// Where the current comes from and goes to, in cells.
-struct Poles {
-    Vec3f source, sink;
-    float rest = 0.0f;  ///< 1/a_p - 1/D
-    bool placed = false;
-
-    /// a / (1 + a/2) of the sketch: of the conductance of half a cell and beyond, in units of sigma.
-    float share(const Vec3f& face, int axis, float side) const {
-        const Vec3f r1 = face - source;
-        const float d1 = glm::dot(r1, r1), through = std::max(0.0f, side * r1[axis]);
-        if (!placed) return through / (d1 + 0.5f * through);
-        const Vec3f r2 = face - sink;
-        const float d2 = std::max(glm::dot(r2, r2), 1.0f), i1 = 1.0f / std::sqrt(d1), i2 = 1.0f / std::sqrt(d2);
-        const float slope = std::max(0.0f, through * i1 / d1 - side * r2[axis] * i2 / d2), level = i1 - i2 + rest;
-        return level > 0.0f ? slope / (level + 0.5f * slope) : 0.0f;
-    }
-};
-
-Poles find_poles(const tissue::Model& model, const Work& work) {
-    const tissue::ElectricParameters& p = model.electric;
-    Poles poles;
-    poles.source = Vec3f(work.centre);
-    if (!p.return_placed) return poles;
-    const double s = model.hexels.spacing_m;
-    const Vec3 there = (p.return_m - model.hexels.centre_m(model.hexels.index(Int3(0)))) / s - Vec3(work.window.low);
-    for (int k = 0; k < 3; ++k) poles.sink[k] = static_cast<float>(there[work.window.axis[k]]);
-    const float distance = glm::length(poles.sink - poles.source);
-    poles.rest = static_cast<float>(s / p.return_radius_m) - 1.0f / std::max(distance, 1.0f);
-    poles.placed = true;
-    return poles;
-}
-
 void list_outer_faces(const tissue::Model& model, Work& work) {
     Level& fine = work.grid.levels[0];
     const Window& window = work.window;
-    const Poles poles = find_poles(model, work);
+    const Poles poles = find_poles(model, work.window, work.centre);
     work.outer_faces.clear();
     for (int axis = 0; axis < 3; ++axis)
         for (const int side : {-1, 1}) {

@@ -55,30 +55,6 @@ void keep_potential(tissue::State& state, const Work& work, float scale) {
     state.field_low = window.low;
 }
 
-/// What the generator gives now, the heat that it makes, and where it goes.
-void drive_load(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
-                const tissue::Input& input) {
-    const tissue::FieldState& field = state.field;
-    const bool on = field.solved != 0;
-    state.generator = drive(input, model.electric, on ? field.conductance_S() : 0.0);
-    const double volt = on ? state.generator.voltage_V : 0.0,
-                 volt2 = state.generator.current_A > 0.0 ? volt * volt : 0.0;
-    tissue::JouleHeat& joule = exchange.joule;
-    joule.density = {state.joule_S_per_m3.data(), state.joule_S_per_m3.size()};
-    joule.place(model.hexels, state.field_low, Int3(volt2 > 0.0 ? model.electric.window_cells : 0));
-    joule.scale = static_cast<float>(volt2);
-    joule.total_W = field.tissue_S * volt2;
-    joule.outflow_W = field.elsewhere_S * volt2;
-    joule.wire_W = field.wire_S * volt2;
-    for (std::size_t m = 0; m < tissue::kStrayMaterials; ++m) {
-        tissue::StrayCurrent& stray = state.stray;
-        stray.power_W[m] = state.stray_S[m] * volt2;
-        stray.energy_J[m] += stray.power_W[m] * model.tick_s;
-        stray.density_A_per_m2[m] = state.stray_density_S_per_m2[m] * std::sqrt(volt2);
-        stray.highest_density_A_per_m2[m] = std::max(stray.highest_density_A_per_m2[m], stray.density_A_per_m2[m]);
-    }
-}
-
 }  // namespace
 
 void WorkDeleter::operator()(Work* work) const {
@@ -174,6 +150,29 @@ void step_field(const tissue::Model& model, tissue::State& state, tissue::Exchan
         work.solving = false;
     }
     drive_load(model, state, exchange, input);
+}
+
+void drive_load(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
+                const tissue::Input& input) {
+    const tissue::FieldState& field = state.field;
+    const bool on = field.solved != 0;
+    state.generator = drive(input, model.electric, on ? field.conductance_S() : 0.0);
+    const double volt = on ? state.generator.voltage_V : 0.0,
+                 volt2 = state.generator.current_A > 0.0 ? volt * volt : 0.0;
+    tissue::JouleHeat& joule = exchange.joule;
+    joule.density = {state.joule_S_per_m3.data(), state.joule_S_per_m3.size()};
+    joule.place(model.hexels, state.field_low, Int3(volt2 > 0.0 ? model.electric.window_cells : 0));
+    joule.scale = static_cast<float>(volt2);
+    joule.total_W = field.tissue_S * volt2;
+    joule.outflow_W = field.elsewhere_S * volt2;
+    joule.wire_W = field.wire_S * volt2;
+    for (std::size_t m = 0; m < tissue::kStrayMaterials; ++m) {
+        tissue::StrayCurrent& stray = state.stray;
+        stray.power_W[m] = state.stray_S[m] * volt2;
+        stray.energy_J[m] += stray.power_W[m] * model.tick_s;
+        stray.density_A_per_m2[m] = state.stray_density_S_per_m2[m] * std::sqrt(volt2);
+        stray.highest_density_A_per_m2[m] = std::max(stray.highest_density_A_per_m2[m], stray.density_A_per_m2[m]);
+    }
 }
 
 void solve_now(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, const tissue::Input& input,

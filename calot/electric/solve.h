@@ -33,7 +33,12 @@ WorkPtr make_work(const tissue::Model& model);
 void step_field(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
                 const tissue::Input& input, Work& work);
 
-/// The same with a whole solve in this very tick, to the residual of ElectricParameters. (For validation.)
+/// What the generator gives now, the heat that it makes, and where it goes, by State::field. (The last part of
+/// step_field, for fields that are solved elsewhere.)
+void drive_load(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
+                const tissue::Input& input);
+
+/// step_field with a whole solve in this very tick, to the residual of ElectricParameters. (For validation.)
 void solve_now(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, const tissue::Input& input,
                Work& work);
 

@@ -320,6 +320,14 @@ void Surface::redo_dirty_blocks() {
     impl_->redo_marked();
 }
 
+void Surface::adopt(Mesh mesh, std::vector<std::int64_t> owner) {
+    impl_->mesh = std::move(mesh);
+    impl_->mesh_owner = std::move(owner);
+    impl_->gathered = true;
+    impl_->smoothed = false;
+    ++impl_->version;
+}
+
 const Mesh& Surface::rest_mesh() const {
     impl_->gather();
     return impl_->mesh;

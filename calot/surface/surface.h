@@ -29,6 +29,10 @@ class Surface {
     /// Redoes the blocks near what was removed. No allocation beyond the reserve made at set-up.
     void redo_dirty_blocks();
 
+    /// Takes over a mesh of State::hexel_present that somebody else made, with its owners. What comes next may be another
+    /// such mesh or rebuild(), not remove().
+    void adopt(Mesh mesh, std::vector<std::int64_t> owner);
+
     /// Rest mesh. Gathered from the blocks when something changed since the last call.
     const Mesh& rest_mesh() const;
     /// For every vertex of rest_mesh(): a hexel nearby (present), for attributes and for the side of a cut it is on.

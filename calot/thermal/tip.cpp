@@ -14,10 +14,6 @@ constexpr double kSteelConductivity_W_per_mK = 16.2;
 // Char of wood and of proteins conducts 0.05 to 0.15 W/(m K) (SFPE Handbook of Fire Protection Engineering).
 constexpr double kCharConductivity_W_per_mK = 0.1;
 
-bool touches(const tissue::Model& model, const tissue::NearHexel& near) {
-    return near.bare_gap_m <= static_cast<float>(model.electric.contact_gap_m);
-}
-
 /// From the wire to a hexel's centre, without what sticks to the wire [m^2 K/W].
 double resistance_m2K_per_W(const tissue::Model& model, std::int64_t hexel) {
     const double k =
@@ -46,31 +42,60 @@ BareWire bare_wire(const tissue::ThermalParameters& thermal, const std::vector<t
     return wire;
 }
 
+bool touches(const tissue::Model& model, const tissue::State& state, const tissue::NearHexel& near) {
+    return near.bare_gap_m <= static_cast<float>(model.electric.contact_gap_m) && state.hexel_present.test(near.hexel);
+}
+
+WireContact find_wire_contact(const tissue::Model& model, const tissue::State& state,
+                              const tissue::Exchange& exchange) {
+    WireContact contact;
+    contact.wire = bare_wire(model.thermal, exchange.capsules);
+    if (contact.wire.area_m2 <= 0.0) return contact;
+    const double s = model.hexels.spacing_m;
+    std::int64_t touched = 0;
+    for (const tissue::NearHexel& near : exchange.near) touched += touches(model, state, near) ? 1 : 0;
+    // Together they cannot touch more of the wire than there is.
+    contact.area_m2 = std::min(s * s, contact.wire.area_m2 / static_cast<double>(std::max<std::int64_t>(touched, 1)));
+    contact.film_m2K_per_W = state.tip.char_kg /
+                             (model.electric.char_density_kg_per_m3 * contact.wire.area_m2) / kCharConductivity_W_per_mK;
+    return contact;
+}
+
+double passed_J_per_m3K(const tissue::Model& model, const Properties& properties, const WireContact& contact,
+                        std::int64_t hexel, double dt_s) {
+    const double share = contact.area_m2 * dt_s / (resistance_m2K_per_W(model, hexel) + contact.film_m2K_per_W) /
+                         model.hexel_volume_m3();
+    // Never more than a quarter of what would even out the temperatures: stable at any step.
+    const tissue::MaterialIndex m = model.hexel_material[static_cast<std::size_t>(hexel)];
+    return std::min(share, 0.25 * static_cast<double>(properties.dry_capacity_J_per_m3K[m]));
+}
+
+void settle_wire(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange,
+                 const BareWire& wire, double taken_J, double dt_s) {
+    tissue::TipState& tip = state.tip;
+    const double arcs_J = exchange.joule.wire_W * dt_s;
+    state.energy_J.delivered += arcs_J;
+    taken_J += arcs_J;
+    const double lost_J = wire.loss_W_per_K * (tip.temperature_K - model.thermal.body_temperature_K) * dt_s;
+    tip.heat_W = taken_J / dt_s;
+    tip.lost_J += lost_J;
+    tip.temperature_K += (taken_J - lost_J) / wire.heat_capacity_J_per_K;
+    state.energy_J.tip += taken_J;
+}
+
 void exchange_with_tip(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,
                        double dt_s) {
-    tissue::TipState& tip = state.tip;
-    const BareWire wire = bare_wire(model.thermal, exchange.capsules);
-    if (wire.area_m2 <= 0.0) return;
-    const double s = model.hexels.spacing_m, volume = model.hexel_volume_m3(),
-                 body_K = model.thermal.body_temperature_K;
-    std::int64_t touched = 0;
-    for (const tissue::NearHexel& near : exchange.near)
-        touched += touches(model, near) && state.hexel_present.test(near.hexel) ? 1 : 0;
-    // Together they cannot touch more of the wire than there is.
-    const double area = std::min(s * s, wire.area_m2 / static_cast<double>(std::max<std::int64_t>(touched, 1)));
-    const double film =
-        tip.char_kg / (model.electric.char_density_kg_per_m3 * wire.area_m2) / kCharConductivity_W_per_mK;
+    const WireContact contact = find_wire_contact(model, state, exchange);
+    if (contact.wire.area_m2 <= 0.0) return;
+    const double volume = model.hexel_volume_m3(), body_K = model.thermal.body_temperature_K;
     double taken_J = 0.0;
     for (const tissue::NearHexel& near : exchange.near) {
-        if (!touches(model, near) || !state.hexel_present.test(near.hexel)) continue;
+        if (!touches(model, state, near)) continue;
         const auto h = static_cast<std::size_t>(near.hexel);
-        const double share = area * dt_s / (resistance_m2K_per_W(model, near.hexel) + film) / volume;
-        // Never more than a quarter of what would even out the temperatures: stable at any step.
-        const double capacity = static_cast<double>(work.properties.dry_capacity_J_per_m3K[model.hexel_material[h]]);
         // Both above body temperature, so that what is at rest is so exactly.
         const float rise_K = work.temperature_K[h] - static_cast<float>(body_K);
-        const double gained =
-            std::min(share, 0.25 * capacity) * (tip.temperature_K - body_K - static_cast<double>(rise_K));
+        const double gained = passed_J_per_m3K(model, work.properties, contact, near.hexel, dt_s) *
+                              (state.tip.temperature_K - body_K - static_cast<double>(rise_K));
         float& enthalpy = state.enthalpy_J_per_m3[h];
         const float before = enthalpy;
         enthalpy += static_cast<float>(gained);
@@ -78,14 +103,7 @@ void exchange_with_tip(const tissue::Model& model, tissue::State& state, const t
         work.active.set((near.hexel - model.hexels.first) / kBlockCells);
         taken_J -= static_cast<double>(enthalpy - before) * volume;
     }
-    const double arcs_J = exchange.joule.wire_W * dt_s;
-    state.energy_J.delivered += arcs_J;
-    taken_J += arcs_J;
-    const double lost_J = wire.loss_W_per_K * (tip.temperature_K - body_K) * dt_s;
-    tip.heat_W = taken_J / dt_s;
-    tip.lost_J += lost_J;
-    tip.temperature_K += (taken_J - lost_J) / wire.heat_capacity_J_per_K;
-    state.energy_J.tip += taken_J;
+    settle_wire(model, state, exchange, contact.wire, taken_J, dt_s);
 }
 
 void stick_char(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,

@@ -23,6 +23,23 @@ struct BareWire {
 };
 BareWire bare_wire(const tissue::ThermalParameters& thermal, const std::vector<tissue::Capsule>& capsules);
 
+/// Whether the wire touches a near hexel that is there.
+bool touches(const tissue::Model& model, const tissue::State& state, const tissue::NearHexel& near);
+
+/// How the wire meets tissue in a heat step. Its parts, for heat steps elsewhere than in this room's kernels:
+struct WireContact {
+    BareWire wire;
+    double area_m2 = 0.0;         ///< that one hexel touches
+    double film_m2K_per_W = 0.0;  ///< resistance of what sticks to the wire
+};
+WireContact find_wire_contact(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange);
+/// What a touched hexel takes in a step per kelvin between wire and hexel [J/(m^3 K)].
+double passed_J_per_m3K(const tissue::Model& model, const Properties& properties, const WireContact& contact,
+                        std::int64_t hexel, double dt_s);
+/// Books a step of the wire, in which tissue gave it `taken_J`: arcs, losses, its temperature.
+void settle_wire(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange,
+                 const BareWire& wire, double taken_J, double dt_s);
+
 /// One heat step's exchange between the wire, arcs and the hexels that it touches. Adds the blocks that it heats to
 /// Work::active.
 void exchange_with_tip(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,
