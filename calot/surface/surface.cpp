@@ -1,6 +1,7 @@
 #include "calot/surface/surface.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 
 #include "calot/base/parallel.h"
@@ -21,6 +22,12 @@ constexpr std::uint8_t kTriangles = 2;  ///< its cubes changed, or the places of
 template <class T>
 void grow(std::vector<T>& array, std::size_t size) {
     if (array.size() < size) array.resize(size);
+}
+
+/// Of the whole program, so that whoever draws several surfaces in turn takes none for another.
+std::uint64_t next_version() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
 }
 
 /// What a block had before it is redone.
@@ -109,7 +116,7 @@ void Surface::Impl::rebuild() {
                                      &corner[3 * std::size_t{triangle_range[static_cast<std::size_t>(block)].offset}]);
         }
     });
-    ++version;
+    version = next_version();
     gathered = false;
 }
 
@@ -309,7 +316,7 @@ void Surface::update_dirty_blocks(const tissue::Model&, const tissue::State&, co
     }
     if (s.redo_blocks.empty()) return;
     s.redo_marked();
-    ++s.version;
+    s.version = next_version();
     s.gathered = false;
 }
 

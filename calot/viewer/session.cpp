@@ -137,7 +137,10 @@ void Session::work() {
             sleep_until(now_s + kPausedInterval_s);
             continue;
         }
-        if (std::exchange(paused, false)) clock_.start(now_s);
+        if (std::exchange(paused, false)) {
+            clock_.start(now_s);
+            rate_.restart();
+        }
         if (now_s < clock_.next_due_s()) {
             sleep_until(clock_.next_due_s());
             now_s = steady_s();
