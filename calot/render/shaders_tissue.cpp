@@ -51,7 +51,7 @@ struct Look {
 };
 
 // Level lines of smooth noise wander and branch as vessels do; `width` in units of the noise.
-float level_line(float value, float width) { return 1.0 - smoothstep(0.35 * width, width, abs(value - 0.5)); }
+float level_line(float value, float width) { return 1.0 - smoothstep(0.05 * width, width, abs(value - 0.5)); }
 
 Look fat_look(Samples s) {
     Look look;
@@ -210,13 +210,13 @@ void main() {
     vec4 course = texture(u_smooth, (p.zxy + 3.0 * (s.base.gbr - 0.5)) / 47.0);
     float off = course.g + 0.10 * (s.base.b - 0.5) - 0.5;
     float trunk = smoothstep(0.40, 0.62, course.b);
-    s.vein = level_line(off + 0.5, 0.004 + 0.007 * trunk) * smoothstep(0.05, 0.4, trunk);
+    s.vein = level_line(off + 0.5, 0.007 + 0.009 * trunk) * smoothstep(0.05, 0.4, trunk);
     float near = trunk * (1.0 - smoothstep(0.05, 0.24, abs(off)));
     s.vein_fine = level_line(s.base.g + 0.08 * (s.fine.r - 0.5), 0.020) * near * smoothstep(0.40, 0.55, s.base.b) +
                   0.5 * level_line(s.fine.g, 0.03) * near * smoothstep(0.50, 0.62, s.fine.b);
     s.vein_fine = min(s.vein_fine, 1.0 - s.vein);
 #else
-    s.vein = level_line(s.base.g, 0.012) * smoothstep(0.45, 0.65, s.base.b);
+    s.vein = level_line(s.base.g, 0.014) * smoothstep(0.45, 0.65, s.base.b);
     s.vein_fine = 0.0;
 #endif
 
@@ -259,7 +259,7 @@ void main() {
     look.albedo = mix(look.albedo, brown, 0.92 * browned);
     // The face of a cut was against the hot gas of what went: a skin much thinner than a hexel is singed.
     float singed = bare * smoothstep(82.0, 100.0, v_burn.y) * smoothstep(0.34, 0.62, 0.5 * s.base.a + 0.5 * s.fine.g + 0.10 * (0.5 - s.cells));
-    look.albedo = mix(look.albedo, mix(vec3(0.46, 0.22, 0.07), vec3(0.17, 0.065, 0.025), smoothstep(0.50, 0.66, s.fine.g)), 0.80 * singed * mix(0.45, 1.0, fatness) * (1.0 - browned));
+    look.albedo = mix(look.albedo, mix(vec3(0.48, 0.24, 0.08), vec3(0.27, 0.11, 0.035), smoothstep(0.48, 0.80, s.fine.g)), 0.75 * singed * mix(0.45, 1.0, fatness) * (1.0 - browned));
     float crack = 1.0 - smoothstep(0.03, 0.16, s.cells);
     float ash = smoothstep(0.64, 0.74, s.fine.a) * smoothstep(0.5, 0.65, s.base.a);
     vec3 char_colour = mix(vec3(0.016, 0.012, 0.010), vec3(0.075, 0.038, 0.022), 0.7 * crack);

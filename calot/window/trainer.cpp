@@ -31,6 +31,7 @@ Trainer::Trainer(const TrainerOptions& options)
       languages_(viewer::Language::available(data_ + "/lang")),
       window_(options.width, options.height, "Calot", options.fullscreen),
       gui_(window_.handle(), window_.content_scale()),
+      backdrop_(data_ + "/backdrop.jpg"),
       pictures_(window_.handle(), window_.renderer()) {
     if (!options_.language.empty()) settings_.language = options_.language;
     if (std::find(languages_.begin(), languages_.end(), settings_.language) == languages_.end()) {
@@ -277,7 +278,10 @@ int Trainer::picture_height(int height) const {
 void Trainer::draw_picture(int width, int height) {
     const Picture& picture = pictures_.picture();
     const bool behind = screen_ == Screen::start || screen_ == Screen::loading || screen_ == Screen::trouble;
-    if (behind || !scope_ || picture.texture == 0) return;
+    if (behind || !scope_ || picture.texture == 0) {
+        backdrop_.draw();
+        return;
+    }
     ImGui::GetBackgroundDrawList()->AddImage(
         reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), ImVec2(0.0f, 0.0f),
         ImVec2(static_cast<float>(width),

@@ -143,7 +143,8 @@ PictureFigures Trainer::figures() {
     figures.draw_ms = 1e3 * pictures_.picture().draw_s;
     figures.latency_ms = 1e3 * latency_s_;
     figures.tier = text_("tier." + std::to_string(pictures_.picture().tier));
-    figures.scheduling = session_->scheduling();
+    figures.scheduling = session_->real_time() ? text_("pace.real_time") : text_("pace.normal");
+    if (const std::string why = session_->why_not_real_time(); !why.empty()) figures.scheduling += ": " + why;
     figures.haptics = haptics_figures();
     return figures;
 }

@@ -12,6 +12,7 @@
 #include "calot/viewer/lens.h"
 #include "calot/viewer/loader.h"
 #include "calot/viewer/replay.h"
+#include "calot/window/backdrop.h"
 #include "calot/window/glfw_window.h"
 #include "calot/window/gui.h"
 #include "calot/window/hud.h"
@@ -76,6 +77,7 @@ class Trainer {
     std::vector<std::string> languages_;
     GlfwWindow window_;
     Gui gui_;
+    Backdrop backdrop_;
     PictureThread pictures_;
     Sound sound_;
 
