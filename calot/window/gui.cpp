@@ -158,6 +158,11 @@ void name_and_value(const std::string& name, const std::string& value, const ImV
     ImGui::TextColored(value_colour, "%s", value.c_str());
 }
 
+std::string capitalised(std::string words) {
+    if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
+    return words;
+}
+
 void wrapped(const std::string& words, const ImVec4& tint) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextColored(tint, "%s", words.c_str());

@@ -56,6 +56,8 @@ void heading(const Gui& gui, const std::string& words);
 void name_and_value(const std::string& name, const std::string& value, const ImVec4& value_colour = colour::kText);
 /// A thin bar, filled from the left as far as `share` says.
 void progress(const Gui& gui, double share, const ImVec4& tint = colour::kAccent);
+/// With a capital at its beginning, where that is a Latin letter.
+std::string capitalised(std::string words);
 /// Text in lines as long as there is room.
 void wrapped(const std::string& words, const ImVec4& tint = colour::kText);
 

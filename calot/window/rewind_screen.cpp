@@ -110,7 +110,7 @@ std::string describe(const Language& text, const Mark& mark) {
     std::string words = text(mark.text);
     const std::size_t at = words.find("{0}");
     if (at != std::string::npos) words.replace(at, 3, text(mark.subject));
-    return words;
+    return capitalised(words);
 }
 
 float rewind_height(const Gui& gui) {

@@ -62,14 +62,15 @@ bool choose_preset(const Gui& gui, const Language& text, Settings& settings) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextColored(colour::kFaint, "%s", text("settings.presets").c_str());
     float at = 250.0f * gui.unit();
-    const float width = (ImGui::GetWindowWidth() - at - ImGui::GetStyle().WindowPadding.x) /
+    const float gap = 4.0f * gui.unit();
+    const float width = (ImGui::GetContentRegionMax().x - at + gap) /
                             static_cast<float>(tissue::kGeneratorPresets.size()) -
-                        4.0f * gui.unit();
+                        gap;
     ImGui::PushFont(gui.fonts().small);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f, ImGui::GetStyle().FramePadding.y));
     for (const tissue::GeneratorPreset& preset : tissue::kGeneratorPresets) {
         ImGui::SameLine(at);
-        at += width + 4.0f * gui.unit();
+        at += width + gap;
         if (!ImGui::Button(preset.name, ImVec2(width, 0.0f))) continue;
         changed = true;
         if (preset.mode == tissue::GeneratorMode::coag) {
@@ -180,7 +181,7 @@ void draw_outcome(const Gui& gui, const Language& text, const viewer::HudLine& o
 /// A measure, what it was, and what it brought.
 void draw_part(const Gui& gui, const Language& text, const viewer::HudLine& part) {
     if (part.detail.empty()) {
-        name_and_value(text(part.name), text(part.value), colour_of(part.mood));
+        name_and_value(capitalised(text(part.name)), text(part.value), colour_of(part.mood));
         return;
     }
     const float start = ImGui::GetCursorPosX(), room = ImGui::GetContentRegionAvail().x;
