@@ -137,11 +137,12 @@ std::string replay(const DebriefContent& c) {
     out +=
         "</div><input type=\"range\" id=\"at\" min=\"0\" value=\"0\" aria-label=\"moment of the replay\"></div><output "
         "id=\"now\"></output></div>\n";
-    out += "<div class=\"events\">";
+    std::string list;  // the pedal is in the bar
     for (const Event& event : c.result.events)
-        out += fmt::format("<a data-t=\"{0:.3f}\"><time>{0:.1f} s</time><i class=\"{1}\"></i><span>{2}</span></a>",
-                           event.time_s, kind_class(event), escaped(training::describe(event)));
-    out += "</div>\n";
+        if (worth_a_mark(event))
+            list += fmt::format("<a data-t=\"{0:.3f}\"><time>{0:.1f} s</time><i class=\"{1}\"></i><span>{2}</span></a>",
+                                event.time_s, kind_class(event), escaped(training::describe(event)));
+    if (!list.empty()) out += "<div class=\"events\">" + list + "</div>\n";
     if (c.subject.session)
         out += fmt::format(
             "<p class=\"go\">Another session can go on from this moment: <code>calot continue {} --from <span "
@@ -199,7 +200,8 @@ std::string maps(const DebriefContent& c) {
         const double all = value_or(c, "duct_injured_m3", 0.0) + value_or(c, "artery_injured_m3", 0.0);
         if (all <= 0.0)
             out += fmt::format(
-                "<p class=\"good\">Neither duct nor artery was injured. The duct became {} at its hottest, the artery "
+                "<p class=\"good\">Neither duct nor artery was injured. At its hottest, the duct was at {}, the artery "
+                "at "
                 "{}.</p>\n",
                 known(c, "duct_peak_K"), known(c, "artery_peak_K"));
         else

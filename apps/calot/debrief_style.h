@@ -12,7 +12,7 @@ inline constexpr const char* kDebriefStyle = R"css(
 .ring b{font:600 44px/1 Georgia,serif}.ring span{color:var(--soft);font-size:13px;margin-top:3px}
 .head .words{flex:1;min-width:300px}.head .words p{margin:0 0 6px}
 .goal{font-weight:600}.facts{color:var(--soft);font-size:15px}
-.broken{background:color-mix(in srgb,var(--red) 12%,var(--card));border:1px solid color-mix(in srgb,var(--red) 40%,var(--line));border-radius:12px;padding:12px 18px;margin:16px 0}
+.broken p{max-width:none}.broken{background:color-mix(in srgb,var(--red) 12%,var(--card));border:1px solid color-mix(in srgb,var(--red) 40%,var(--line));border-radius:12px;padding:12px 18px;margin:16px 0}
 .broken p{margin:3px 0}
 .tips{list-style:none;padding:0;margin:0;display:grid;gap:10px;grid-template-columns:repeat(auto-fit,minmax(min(100%,320px),1fr))}
 .tips li{background:var(--card);border:1px solid var(--line);border-radius:12px;padding:14px 16px}

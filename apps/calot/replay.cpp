@@ -9,6 +9,7 @@
 #include "calot/training/session.h"
 #include "commands.h"
 #include "run.h"
+#include "scored.h"
 
 namespace calot::app {
 
@@ -79,6 +80,7 @@ int replay(const ReplayOptions& options) {
     plan.ticks = static_cast<std::int64_t>(recording.inputs.size());
     training::Moment moment;
     if (options.from_s > 0.0) {
+        note_older_checkpoints(options.recording);
         plan.before = &recording;
         plan.reach = [&] {
             moment = training::reach(options.recording, std::llround(options.from_s / plan.setup->model.tick_s), nullptr,

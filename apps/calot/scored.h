@@ -17,6 +17,8 @@ std::vector<std::string> task_folders();
 /// `to_the_end`.
 void score_against(const training::Task& task, RunPlan& plan, bool to_the_end);
 
+/// Says why a moment of this recording takes long to reach, where its checkpoints are of an older version.
+void note_older_checkpoints(const std::string& recording);
 /// Points, parts and advice.
 void print_score(const training::Result& result);
 

@@ -59,6 +59,7 @@ int session(const SessionOptions& options) {
     std::unique_ptr<simulation::Simulation> run;
     std::optional<training::LiveSession> live;
     if (options.continues) {
+        note_older_checkpoints(store.path(*options.continues, "recording.calot"));
         if (!start.task) start.task = training::task_of(store, *options.continues);
         training::Moment from = training::reach(store, *options.continues, std::llround(options.from_s * 1e3));
         setup = from.setup;
@@ -93,6 +94,7 @@ std::string write_debrief(training::Store& store, std::int64_t id, int frames, P
     subject.session = store.session(id);
     subject.recording = store.path(id, "recording.calot");
     subject.task = training::task_of(store, id);
+    note_older_checkpoints(subject.recording);
     const DebriefContent content = gather_debrief(subject, frames, progress);
     // What a session that was cut off was worth is known now, to its end.
     if (subject.session->status == training::SessionStatus::recovered) {
@@ -128,6 +130,7 @@ int debrief(const DebriefOptions& options) {
     else if (std::filesystem::exists(folder / "task.toml"))
         subject.task = training::load_task((folder / "task.toml").string());
     const std::string out = options.out.empty() ? (folder / "debrief.html").string() : options.out;
+    note_older_checkpoints(subject.recording);
     const DebriefContent content = gather_debrief(subject, options.frames, options.progress);
     write_file(out + ".tmp", debrief_html(content));
     std::filesystem::rename(out + ".tmp", out);

@@ -44,8 +44,11 @@ void print_study(const training::Study& study) {
     if (study.with_answers == 0) return;
     fmt::print("\n{:<26}  {:>3}  {:>5}  {:>5}\n", "question", "n", "mean", "SD");
     for (std::size_t k = 0; k < training::kQuestions; ++k)
-        fmt::print("{:<26}  {:>3}  {:>5.2f}  {:>5.2f}\n", training::questions()[k].aspect, study.answers[k].count,
-                   study.answers[k].mean, study.answers[k].deviation);
+        if (const training::Spread& spread = study.answers[k]; spread.count > 0)
+            fmt::print("{:<26}  {:>3}  {:>5.2f}  {:>5.2f}\n", training::questions()[k].aspect, spread.count, spread.mean,
+                       spread.deviation);
+        else
+            fmt::print("{:<26}  {:>3}  {:>5}  {:>5}\n", training::questions()[k].aspect, 0, "-", "-");
 }
 
 /// The curves of one task: points against attempts, a line a trainee.
@@ -107,7 +110,14 @@ std::string answers_section(const training::Study& study) {
         "<table class=\"answers\"><tr><th></th><th>Statement</th><th></th><th>Mean</th><th>SD</th><th>n</th></tr>\n";
     for (std::size_t k = 0; k < training::kQuestions; ++k) {
         const training::Spread& spread = study.answers[k];
-        const double mean = spread.mean, share = spread.count > 0 ? (mean - 1.0) / 4.0 : 0.0;
+        if (spread.count == 0) {
+            out += fmt::format(
+                "<tr><td>{}</td><td><b>{}.</b> {}</td><td class=\"likert\"><div></div></td><td>–</td><td>–</td>"
+                "<td>0</td></tr>\n",
+                k + 1, escaped(training::questions()[k].aspect), escaped(training::questions()[k].text));
+            continue;
+        }
+        const double mean = spread.mean, share = (mean - 1.0) / 4.0;
         const double low = std::clamp((mean - spread.deviation - 1.0) / 4.0, 0.0, 1.0),
                      high = std::clamp((mean + spread.deviation - 1.0) / 4.0, 0.0, 1.0);
         out += fmt::format(
@@ -148,7 +158,7 @@ std::string study_html(const training::Study& study, const std::vector<training:
         "content=\"width=device-width,initial-scale=1\">\n<title>Study · Calot</title>\n<style>";
     out += kReportStyle;
     out +=
-        ".soft{color:var(--soft);font-size:15px}.wide,.answers{max-width:none}.likert{width:26%;min-width:140px}"
+        ".plots svg{max-width:640px}.soft{color:var(--soft);font-size:15px}.wide,.answers{max-width:none}.likert{width:26%;min-width:140px}"
         ".likert div{position:relative;height:12px;border-radius:6px;background:var(--line)}"
         ".likert i{position:absolute;top:0;height:12px;border-radius:6px;background:color-mix(in srgb,var(--blue) "
         "35%,transparent)}"
@@ -160,7 +170,8 @@ std::string study_html(const training::Study& study, const std::vector<training:
         study.sessions,
         [&] {
             std::vector<std::string> labels;
-            for (const training::SessionRow& row : rows) labels.push_back(row.trainee);
+            for (const training::SessionRow& row : rows)
+                if (!row.trainee.empty()) labels.push_back(row.trainee);
             std::sort(labels.begin(), labels.end());
             return std::unique(labels.begin(), labels.end()) - labels.begin();
         }(),

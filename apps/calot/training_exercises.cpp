@@ -125,11 +125,10 @@ std::vector<viewer::HudLine> TrainingAttempt::hud() {
             const training::Metric& metric = *training::find_metric(goals[k].metric);
             const double value = figures.goals[k];
             const bool met = goals[k].met({{goals[k].metric, value}});
-            lines.push_back(
-                {metric.title,
-                 fmt::format("{} / {}", training::shown(metric, value),
-                             training::shown(metric, goals[k].at_least ? *goals[k].at_least : *goals[k].at_most)),
-                 met ? Mood::good : Mood::plain});
+            const double goal = goals[k].at_least ? *goals[k].at_least : *goals[k].at_most;
+            lines.push_back({metric.title,
+                             fmt::format("{} / {}", training::shown(metric, value), training::shown(metric, goal)),
+                             met ? Mood::good : Mood::plain, "", goals[k].at_least && goal > 0.0 ? value / goal : -1.0});
         }
         const int broken = figures.limits_broken;
         if (broken > 0) lines.push_back({"hud.limits_broken", fmt::format("{}", broken), Mood::bad});
@@ -175,17 +174,19 @@ viewer::Debrief TrainingAttempt::debrief() {
     debrief.title = start_.task ? start_.task->title : std::string("exercise.free");
     if (live_->result()) {
         const training::Score& score = live_->result()->score;
-        debrief.lines.push_back({"debrief.points", fmt::format("{:.0f} / 100", score.points),
-                                 !score.broken.empty() ? Mood::bad
-                                 : score.completed    ? Mood::good
-                                                      : Mood::plain});
+        debrief.outcome = {score.completed ? "debrief.completed" : "debrief.not_completed",
+                           fmt::format("{:.0f} / 100", score.points),
+                           !score.broken.empty() ? Mood::bad
+                           : score.completed    ? Mood::good
+                                                 : Mood::plain};
         for (const training::BrokenLimit& limit : score.broken)
-            debrief.lines.push_back({limit.message, fmt::format("\u2264 {:.0f}", limit.cap), Mood::bad});
+            debrief.lines.push_back({limit.message, fmt::format("\u2264 {:.0f} / 100", limit.cap), Mood::bad});
         for (const training::ScorePart& part : score.parts)
             if (part.known)
                 debrief.lines.push_back({training::find_metric(part.metric)->title,
                                          fmt::format("{:.0f} / {:.0f}", part.points, part.weight),
-                                         part.points >= 0.75 * part.weight ? Mood::good : Mood::plain});
+                                         part.points >= 0.75 * part.weight ? Mood::good : Mood::plain,
+                                         training::shown(*training::find_metric(part.metric), part.value)});
     }
     if (!asked_) write_debrief_beside(*store_, row_->id);
     asked_ = true;
@@ -207,6 +208,10 @@ std::optional<viewer::CutOff> find_cut_off(const std::shared_ptr<training::Store
     cut_off.title = start.task ? start.task->title : std::string("exercise.free");
     cut_off.started_utc = row.started_utc;
     cut_off.past = past_of(store, start, row.id, {});
+    cut_off.past.find_marks = [store, id = row.id, recording = cut_off.past.recording] {
+        const auto ticks = static_cast<std::int64_t>(simulation::read_recording(recording).inputs.size());
+        return marks_of(training::reach(*store, id, ticks).meter->events());
+    };
     // Closing it takes a run from its last checkpoint on: that is not for the window to wait for.
     cut_off.close = [store, id = row.id] { write_debrief_beside(*store, id); };
     return cut_off;

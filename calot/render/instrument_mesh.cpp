@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "calot/render/jaw_mesh.h"
 
 namespace calot::render {
 
 namespace {
 
-constexpr double kJaw_m = 2e-3;  ///< thinner pieces of the grasper are its jaws: bare steel
-
+constexpr double kJaw_m = 2e-3;  ///< thinner pieces of the grasper are its jaws
 constexpr int kSides = 24;
 constexpr double kBendInRadii = 2.4;     ///< radius of the bend's middle line
 constexpr double kJoined_m = 1e-5;       ///< ends closer than this are one joint
@@ -96,10 +98,7 @@ struct Piece {
 
 /// Takes capsules that share ends and have about the same radius out of `left`, in order along the chain.
 std::vector<Piece> take_chain(std::vector<tissue::Capsule>& left) {
-    auto piece = [](const tissue::Capsule& c) {
-        return Piece{c.a_m, c.b_m, c.radius_m,
-                     c.bare || (c.instrument == tissue::Instrument::grasper && c.radius_m < kJaw_m)};
-    };
+    auto piece = [](const tissue::Capsule& c) { return Piece{c.a_m, c.b_m, c.radius_m, c.bare}; };
     std::vector<Piece> chain{piece(left.front())};
     left.erase(left.begin());
     for (bool grown = true; grown;) {
@@ -191,6 +190,40 @@ void add_shaft(Piece piece, const Vec3& metal_m, InstrumentMesh& mesh) {
     tube.add_cap(piece.to_m, along, 0.97 * r, 0.3 * r, false, 0.0f, 0.0f);
 }
 
+/// Takes the grasper out of `left`: two jaws in a steel joint at the end of a shaft.
+void add_grasper(std::vector<tissue::Capsule>& left, InstrumentMesh& mesh) {
+    std::vector<tissue::Capsule> jaws;
+    std::optional<tissue::Capsule> shaft;
+    for (const tissue::Capsule& capsule : left)
+        if (capsule.instrument == tissue::Instrument::grasper) {
+            if (capsule.radius_m < kJaw_m)
+                jaws.push_back(capsule);
+            else
+                shaft = capsule;
+        }
+    left.erase(std::remove_if(left.begin(), left.end(),
+                              [](const tissue::Capsule& c) { return c.instrument == tissue::Instrument::grasper; }),
+               left.end());
+    for (std::size_t k = 0; k < jaws.size(); ++k) {
+        const tissue::Capsule& jaw = jaws[k];
+        Vec3 inward(0.0, 0.0, 1.0);
+        if (jaws.size() == 2) {
+            const tissue::Capsule& other = jaws[1 - k];
+            inward = 0.5 * (other.a_m + other.b_m - jaw.a_m - jaw.b_m);
+        }
+        add_jaw(jaw.a_m, jaw.b_m, jaw.radius_m, inward, mesh);
+    }
+    if (!shaft) return;
+    add_shaft({shaft->a_m, shaft->b_m, shaft->radius_m, false}, jaws.empty() ? shaft->a_m : jaws.front().a_m, mesh);
+    if (jaws.size() != 2) return;
+    const Vec3 hinge_m = 0.5 * (jaws[0].a_m + jaws[1].a_m), along = glm::normalize(hinge_m - shaft->a_m);
+    const double r = 0.86 * shaft->radius_m;
+    Tube joint(mesh);
+    joint.add({shaft->a_m, along, r, 0.0, 1.0f, 0.0f});
+    joint.add({hinge_m - 0.4 * r * along, along, r, 0.0, 1.0f, 0.0f});
+    joint.add_cap(hinge_m - 0.4 * r * along, along, r, 0.9 * r, false, 1.0f, 0.0f);
+}
+
 }  // namespace
 
 void build_instrument(const std::vector<tissue::Capsule>& capsules, InstrumentMesh& mesh) {
@@ -199,6 +232,7 @@ void build_instrument(const std::vector<tissue::Capsule>& capsules, InstrumentMe
     std::vector<tissue::Capsule> left;
     for (const tissue::Capsule& capsule : capsules)
         if (glm::length(capsule.b_m - capsule.a_m) > 1e-7 && capsule.radius_m > 0.0) left.push_back(capsule);
+    add_grasper(left, mesh);
     Vec3 metal_m(0.0);
     for (const tissue::Capsule& capsule : left)
         if (capsule.bare) metal_m = 0.5 * (capsule.a_m + capsule.b_m);

@@ -1,5 +1,6 @@
 #pragma once
-// The hook as it is drawn: smooth tubes along chains of capsules that share ends, bends rounded off.
+// Instruments as they are drawn. The hook: smooth tubes along chains of capsules that share ends, bends rounded off.
+// The grasper: two toothed jaws in a joint (jaw_mesh.h).
 
 #include <cstdint>
 #include <vector>

@@ -51,7 +51,7 @@ struct Look {
 };
 
 // Level lines of smooth noise wander and branch as vessels do; `width` in units of the noise.
-float level_line(float value, float width) { return 1.0 - smoothstep(0.35 * width, width, abs(value - 0.5)); }
+float level_line(float value, float width) { return 1.0 - smoothstep(0.05 * width, width, abs(value - 0.5)); }
 
 Look fat_look(Samples s) {
     Look look;
@@ -60,14 +60,14 @@ Look fat_look(Samples s) {
     float tone = clamp(0.20 + 0.45 * s.pillow + 1.7 * (s.base.r - 0.5), 0.0, 1.0);
     look.albedo = mix(deep, pale, tone);
     look.albedo = mix(look.albedo, vec3(0.98, 0.86, 0.58), 0.45 * smoothstep(0.50, 0.80, s.fine.a));
-    look.albedo = mix(look.albedo, vec3(0.78, 0.38, 0.21), 0.52 * septum);
+    look.albedo = mix(look.albedo, vec3(0.80, 0.42, 0.20), 0.40 * septum);
     look.albedo = mix(look.albedo, vec3(0.80, 0.36, 0.24), 0.35 * smoothstep(0.55, 0.75, s.base.b));   // flushed patches
-    look.albedo = mix(look.albedo, vec3(0.52, 0.06, 0.035), 0.70 * s.vein + 0.50 * s.vein_fine);
-    look.pillow = 0.46;
-    look.bump = 0.11;
+    look.albedo = mix(look.albedo, vec3(0.36, 0.022, 0.022), 0.80 * s.vein + 0.55 * s.vein_fine);
+    look.pillow = 0.42;
+    look.bump = 0.075;
     look.rough = 0.40;
-    look.coat = 1.2;
-    look.coat_rough = 0.17;
+    look.coat = 1.5;
+    look.coat_rough = 0.14;
     return look;
 }
 Look duct_look(Samples s) {
@@ -202,7 +202,7 @@ void main() {
     vec4 small = texture(u_bump, p.zxy / 4.1);
     bumps += 0.45 * slope_of(small.rgb) * (BUMP_SLOPE / 4.1);
     vec4 lobes = texture(u_lobules, (warped.yzx + 3.0 * (s.fine.rgb - 0.5)) / 9.7);
-    lobules += 0.30 * slope_of(lobes.rgb).zxy * (PILLOW_SLOPE / 9.7);
+    lobules += 0.22 * slope_of(lobes.rgb).zxy * (PILLOW_SLOPE / 9.7);
     s.pillow = mix(s.pillow, pillow_height(lobes.a), 0.3);
 #endif
     // Vessels: long wandering lines with thin branches near them.
@@ -210,13 +210,13 @@ void main() {
     vec4 course = texture(u_smooth, (p.zxy + 3.0 * (s.base.gbr - 0.5)) / 47.0);
     float off = course.g + 0.10 * (s.base.b - 0.5) - 0.5;
     float trunk = smoothstep(0.40, 0.62, course.b);
-    s.vein = level_line(off + 0.5, 0.007 + 0.012 * trunk) * smoothstep(0.05, 0.4, trunk);
+    s.vein = level_line(off + 0.5, 0.007 + 0.009 * trunk) * smoothstep(0.05, 0.4, trunk);
     float near = trunk * (1.0 - smoothstep(0.05, 0.24, abs(off)));
     s.vein_fine = level_line(s.base.g + 0.08 * (s.fine.r - 0.5), 0.020) * near * smoothstep(0.40, 0.55, s.base.b) +
                   0.5 * level_line(s.fine.g, 0.03) * near * smoothstep(0.50, 0.62, s.fine.b);
     s.vein_fine = min(s.vein_fine, 1.0 - s.vein);
 #else
-    s.vein = level_line(s.base.g, 0.012) * smoothstep(0.45, 0.65, s.base.b);
+    s.vein = level_line(s.base.g, 0.014) * smoothstep(0.45, 0.65, s.base.b);
     s.vein_fine = 0.0;
 #endif
 
@@ -239,7 +239,7 @@ void main() {
     float ragged = 60.0 * (s.base.a - 0.5) + 40.0 * (s.fine.r - 0.5);
     float peak = v_burn.y + clamp((v_burn.y - 45.0) / 40.0, 0.0, 1.0) * ragged;
     // The collagen of vessels keeps its colour longer than the protein between fat cells.
-    float blanched = max(smoothstep(56.0, 80.0, peak), smoothstep(0.3, 0.9, v_burn.z)) * mix(0.4, 1.0, fatness);
+    float blanched = max(smoothstep(52.0, 88.0, peak), smoothstep(0.3, 0.95, v_burn.z)) * mix(0.4, 1.0, fatness);
     float browned = smoothstep(125.0, 200.0, peak);
     float charred = smoothstep(215.0, 285.0, peak);
     // Laid bare: raw, frothy, wet, with thin pale strands.
@@ -253,16 +253,19 @@ void main() {
     look.bump += 0.14 * bare * (0.3 + 0.7 * fatness);
     look.coat_rough = mix(look.coat_rough, 0.15, bare);
 
-    vec3 pale = mix(vec3(0.70, 0.56, 0.36), vec3(0.84, 0.76, 0.60), clamp(0.5 + 2.0 * (s.fine.a - 0.5) + 1.2 * (s.base.a - 0.5), 0.0, 1.0));
+    vec3 pale = mix(vec3(0.58, 0.40, 0.19), vec3(0.76, 0.63, 0.41), clamp(0.5 + 2.0 * (s.fine.a - 0.5) + 1.2 * (s.base.a - 0.5), 0.0, 1.0));
     look.albedo = mix(look.albedo, pale, (0.55 + 0.35 * s.base.a) * blanched);
     vec3 brown = mix(vec3(0.34, 0.145, 0.035), vec3(0.13, 0.045, 0.014), smoothstep(150.0, 230.0, peak + 60.0 * (s.fine.g - 0.5)));
     look.albedo = mix(look.albedo, brown, 0.92 * browned);
+    // The face of a cut was against the hot gas of what went: a skin much thinner than a hexel is singed.
+    float singed = bare * smoothstep(82.0, 100.0, v_burn.y) * smoothstep(0.34, 0.62, 0.5 * s.base.a + 0.5 * s.fine.g + 0.10 * (0.5 - s.cells));
+    look.albedo = mix(look.albedo, mix(vec3(0.48, 0.24, 0.08), vec3(0.27, 0.11, 0.035), smoothstep(0.48, 0.80, s.fine.g)), 0.75 * singed * mix(0.45, 1.0, fatness) * (1.0 - browned));
     float crack = 1.0 - smoothstep(0.03, 0.16, s.cells);
     float ash = smoothstep(0.64, 0.74, s.fine.a) * smoothstep(0.5, 0.65, s.base.a);
     vec3 char_colour = mix(vec3(0.016, 0.012, 0.010), vec3(0.075, 0.038, 0.022), 0.7 * crack);
     char_colour = mix(char_colour, vec3(0.34, 0.31, 0.28), 0.7 * ash);
     look.albedo = mix(look.albedo, char_colour, charred);
-    float dry = max(max(0.55 * blanched, 0.75 * browned), max(0.93 * charred, 0.8 * v_burn.w));
+    float dry = max(max(0.40 * blanched, 0.75 * browned), max(0.93 * charred, 0.8 * v_burn.w));
     look.coat *= 1.0 - dry;
     look.rough = mix(look.rough, 0.62, dry);
     look.coat_rough = mix(look.coat_rough, 0.36, dry);
@@ -272,7 +275,7 @@ void main() {
     if (v_exposure.y > 0.004) {
         float film = v_exposure.y * (1.15 - 0.5 * s.pillow) + 0.10 * (s.fine.r - 0.5) * (1.0 - v_exposure.y);
         float cover = smoothstep(0.03, 0.30, film);
-        vec3 blood = mix(vec3(0.44, 0.012, 0.010), vec3(0.17, 0.003, 0.004), smoothstep(0.15, 0.9, film));
+        vec3 blood = mix(vec3(0.30, 0.006, 0.006), vec3(0.10, 0.002, 0.003), smoothstep(0.15, 0.9, film));
         look.albedo = mix(look.albedo, blood, 0.93 * cover);
         look.bump *= 1.0 - 0.75 * cover;
         look.pillow *= 1.0 - 0.45 * cover;
@@ -301,7 +304,7 @@ void main() {
     tilt -= dot(tilt, up) * up;
     Material m;
     m.normal = normalize(up - 0.8 * tilt);
-    m.coat_normal = normalize(up - 0.75 * look.pillow * (lobules - dot(lobules, up) * up) - 0.8 * look.bump * (bumps - dot(bumps, up) * up));
+    m.coat_normal = normalize(up - 0.75 * look.pillow * (lobules - dot(lobules, up) * up) - 0.55 * look.bump * (bumps - dot(bumps, up) * up));
     m.albedo = look.albedo;
     m.rough = look.rough;
     m.specular = 0.035;

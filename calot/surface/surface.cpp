@@ -1,6 +1,7 @@
 #include "calot/surface/surface.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 
 #include "calot/base/parallel.h"
@@ -21,6 +22,12 @@ constexpr std::uint8_t kTriangles = 2;  ///< its cubes changed, or the places of
 template <class T>
 void grow(std::vector<T>& array, std::size_t size) {
     if (array.size() < size) array.resize(size);
+}
+
+/// Of the whole program, so that whoever draws several surfaces in turn takes none for another.
+std::uint64_t next_version() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
 }
 
 /// What a block had before it is redone.
@@ -112,7 +119,7 @@ void Surface::Impl::rebuild() {
                                      &corner[3 * std::size_t{triangle_range[static_cast<std::size_t>(block)].offset}]);
         }
     });
-    ++version;
+    version = next_version();
     gathered = false;
 }
 
@@ -312,7 +319,7 @@ void Surface::remove(const tissue::Exchange& exchange) {
         s.mark(p - 1 - kBlock, p, kTriangles);
         s.mark(p - kReach - 1, p + kReach, kVertices);
         s.gathered = false;
-        ++s.version;
+        s.version = next_version();
     }
 }
 
@@ -325,7 +332,7 @@ void Surface::adopt(Mesh mesh, std::vector<std::int64_t> owner) {
     impl_->mesh_owner = std::move(owner);
     impl_->gathered = true;
     impl_->smoothed = false;
-    ++impl_->version;
+    impl_->version = next_version();
 }
 
 const Mesh& Surface::rest_mesh() const {

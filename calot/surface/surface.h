@@ -40,7 +40,7 @@ class Surface {
     /// rest_mesh() smoothed for drawing (smoothing.h): same triangles and owners. Worked out when something changed
     /// since the last call.
     const Mesh& smooth_mesh() const;
-    /// Counts up whenever rest_mesh() changed.
+    /// Counts up whenever rest_mesh() changed; no two surfaces ever have the same.
     std::uint64_t version() const;
 
   private:

@@ -124,7 +124,8 @@ CheckpointReader::CheckpointReader(const std::string& path) : path_(path) {
     const File file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file) return;
     char magic[sizeof(kMagic)] = {};
-    if (std::fread(magic, sizeof(magic), 1, file.get()) == 1 && std::memcmp(magic, kOlder, sizeof(magic)) == 0) return;
+    older_ = std::fread(magic, sizeof(magic), 1, file.get()) == 1 && std::memcmp(magic, kOlder, sizeof(magic)) == 0;
+    if (older_) return;
     if (std::memcmp(magic, kMagic, sizeof(magic)) != 0)
         throw InputError(path, 0, 0, "these are no checkpoints of Calot",
                          "remove the file: it is made anew when needed");

@@ -53,6 +53,8 @@ class CheckpointReader {
     /// an older version, holds none. Throws InputError when it is something else than checkpoints.
     explicit CheckpointReader(const std::string& path);
 
+    /// The file is of an older version of Calot: moments are reached from the start, which takes longer.
+    bool older() const { return older_; }
     /// Ascending.
     std::vector<std::int64_t> ticks() const;
     /// The last at or before `tick`; -1 when there is none.
@@ -71,6 +73,7 @@ class CheckpointReader {
     };
     std::string path_;
     std::vector<Entry> entries_;
+    bool older_ = false;
 };
 
 }  // namespace calot::training

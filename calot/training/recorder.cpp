@@ -6,6 +6,8 @@ namespace calot::training {
 
 namespace {
 
+/// Over so many ticks the state is copied that a checkpoint holds.
+constexpr std::int64_t kCopyTicks = 48;
 constexpr auto kNap = std::chrono::milliseconds(20);
 constexpr auto kFlush = std::chrono::milliseconds(150);
 constexpr auto kSync = std::chrono::milliseconds(1000);
@@ -15,9 +17,9 @@ constexpr auto kSync = std::chrono::milliseconds(1000);
 Recorder::Recorder(const std::string& folder, const std::string& program_version, const std::string& scene_text,
                    const tissue::State& initial, const Prefix& prefix)
     : ring_(kRing),
+      slot_(initial),
       recording_(folder + "/recording.calot", program_version, scene_text, initial),
       checkpoints_(folder + "/checkpoints.calot", initial) {
-    slot_.state = initial;  // the memory for copies
     if (prefix.recording != nullptr) {
         recording_.adopt(*prefix.recording, prefix.ticks);
         checkpoints_.adopt(prefix.checkpoints, prefix.ticks);
@@ -40,9 +42,13 @@ void Recorder::after_tick(const simulation::Simulation& run, const tissue::Input
     ring_[put % kRing] = input;
     put_.store(put + 1, std::memory_order_release);
     const std::int64_t tick = run.figures().tick;
-    if (tick % kTicksPerCheckpoint != 0 || !can_be_stored(run.model(), tick)) return;
+    slot_.copy.after_tick(run);
+    const std::int64_t left = (kTicksPerCheckpoint - tick % kTicksPerCheckpoint) % kTicksPerCheckpoint;
+    if (left > kCopyTicks) return;
     if (slot_.full.load(std::memory_order_acquire)) return;  // the disk is slow: this one is left out
-    slot_.state = run.state();
+    if (left > 0) slot_.copy.go_on(run);
+    if (left > 0 || !can_be_stored(run.model(), tick)) return;
+    slot_.copy.bring_up_to_date(run);
     slot_.aside = aside();
     slot_.inputs = put + 1;
     slot_.full.store(true, std::memory_order_release);
@@ -61,8 +67,8 @@ void Recorder::drain() {
 }
 
 void Recorder::write_slot() {
-    recording_.flush(slot_.state);
-    checkpoints_.add(slot_.state, slot_.aside);
+    recording_.flush(slot_.copy.state());
+    checkpoints_.add(slot_.copy.state(), slot_.aside);
     slot_.full.store(false, std::memory_order_release);
 }
 

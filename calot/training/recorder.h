@@ -1,9 +1,9 @@
 #pragma once
 // Writes a session to its folder while it runs, from a thread of its own: recording.calot and checkpoints.calot.
 //
-// The physics thread only puts an input into a ring and, once a second, copies the state into a slot; it takes no lock
-// and waits for nothing, unless the disk has been stuck for half a minute. Inputs are with the system after 0.2 s at
-// most, so that a killed program loses less than a second.
+// The physics thread only puts an input into a ring and, once a second, copies the state into a slot, spread over some
+// ticks (state_copy.h); it takes no lock and waits for nothing, unless the disk has been stuck for half a minute. Inputs
+// are with the system after 0.2 s at most, so that a killed program loses less than a second.
 
 #include <array>
 #include <atomic>
@@ -18,6 +18,7 @@
 #include "calot/simulation/recording.h"
 #include "calot/simulation/simulation.h"
 #include "calot/training/checkpoints.h"
+#include "calot/training/state_copy.h"
 
 namespace calot::training {
 
@@ -55,7 +56,8 @@ class Recorder {
     std::atomic<std::size_t> put_{0}, got_{0};
 
     struct Slot {
-        tissue::State state;
+        explicit Slot(const tissue::State& initial) : copy(initial) {}
+        StateCopy copy;  ///< of the last checkpoint; the physics thread's while the slot is not full
         Aside aside;
         std::size_t inputs = 0;  ///< put_ when it was filled
         std::atomic<bool> full{false};

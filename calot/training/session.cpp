@@ -81,10 +81,12 @@ Moment reach(const std::string& recording, std::int64_t tick, const Task* task,
     return moment;
 }
 
-std::optional<Task> task_of(const Store& store, std::int64_t session) {
+std::optional<Task> task_of(Store& store, std::int64_t session) {
     const std::string path = store.path(session, "task.toml");
     if (!std::filesystem::exists(path)) return std::nullopt;
-    return load_task(path);
+    Task task = load_task(path);
+    task.name = store.session(session).task;  // not that of the copy's file
+    return task;
 }
 
 Moment reach(Store& store, std::int64_t session, std::int64_t tick, std::shared_ptr<const simulation::Setup> setup) {

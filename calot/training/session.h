@@ -48,7 +48,7 @@ Moment reach(Store& store, std::int64_t session, std::int64_t tick,
              std::shared_ptr<const simulation::Setup> setup = nullptr);
 
 /// Task of a stored session; none for free practice.
-std::optional<Task> task_of(const Store& store, std::int64_t session);
+std::optional<Task> task_of(Store& store, std::int64_t session);
 
 /// Values for a display, written by the physics thread, read by any other.
 struct LiveFigures {

@@ -18,6 +18,8 @@ struct HudLine {
     std::string name;
     std::string value;
     enum class Mood { plain, good, bad } mood = Mood::plain;
+    std::string detail{};  ///< beside the value
+    double share = -1.0;  ///< of the way to a goal, 0 to 1; below 0: there is none
 };
 
 /// Something worth coming back to.
@@ -34,6 +36,8 @@ class Attempt;
 struct Past {
     std::string recording;  ///< path; empty: there is none
     std::vector<Mark> marks;
+    /// Finds them where they are not known yet; may be empty. Called in a thread, may take seconds.
+    std::function<std::vector<Mark>()> find_marks;
     /// A run at this tick as it was, to the last bit, and the attempt that goes on from it. Called in a thread; throws
     /// InputError.
     std::function<std::pair<std::unique_ptr<simulation::Simulation>, std::shared_ptr<Attempt>>(
@@ -52,6 +56,7 @@ struct Questionnaire {
 /// What the trainee is told at the end.
 struct Debrief {
     std::string title;
+    HudLine outcome;  ///< what it comes to; no value: nothing was counted
     std::vector<HudLine> lines;
     std::string report;  ///< path of a page to open, may be empty
     Past past;

@@ -47,6 +47,7 @@ class Tape {
             if (!advance()) return false;
         return true;
     }
+    bool older() const { return checkpoints_.older(); }
     void fill(Snapshot& snapshot) { fill_snapshot(*run_, last_input(), picture_, snapshot); }
 
     std::vector<PedalSpan> pedal() const {
@@ -117,6 +118,7 @@ void Replay::work(const std::string& recording) {
         Tape tape(recording, std::move(read), setup_);
         ticks_ = tape.ticks();
         pedal_ = tape.pedal();
+        older_ = tape.older();
         ready_ = true;
         auto published = Clock::now() - kPictureInterval;
         while (!closing_) {

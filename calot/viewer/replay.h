@@ -41,6 +41,8 @@ class Replay {
     std::int64_t ticks() const { return ticks_; }
     const std::vector<PedalSpan>& pedal() const { return pedal_; }
     std::shared_ptr<const simulation::Setup> setup() const { return setup_; }
+    /// Its checkpoints are of an older version: going back means running from the start.
+    bool older() const { return older_; }
     /// The state after this many ticks is wished for, 1 to ticks(). Never waits.
     void wish(std::int64_t tick) { wish_ = tick; }
     /// Ticks of the newest snapshot.
@@ -54,6 +56,7 @@ class Replay {
     std::shared_ptr<const simulation::Setup> setup_;
     std::int64_t ticks_ = 0;
     std::vector<PedalSpan> pedal_;
+    bool older_ = false;
     TripleBuffer<Snapshot> snapshots_;
     std::atomic<std::int64_t> wish_{1}, shown_{0};
     std::atomic<bool> ready_{false}, closing_{false};

@@ -79,11 +79,9 @@ void Session::set(const Controls& controls) {
     controls_.publish();
 }
 
-std::string Session::scheduling() const {
+std::string Session::why_not_real_time() const {
     const int code = scheduling_;
-    if (code == 1) return "real-time (SCHED_FIFO)";
-    if (code == 0) return "not asked";
-    return std::string("normal priority: ") + std::strerror(-code);
+    return code < 0 ? std::strerror(-code) : "";
 }
 
 void Session::book(double begun_s, double ended_s) {
@@ -137,7 +135,10 @@ void Session::work() {
             sleep_until(now_s + kPausedInterval_s);
             continue;
         }
-        if (std::exchange(paused, false)) clock_.start(now_s);
+        if (std::exchange(paused, false)) {
+            clock_.start(now_s);
+            rate_.restart();
+        }
         if (now_s < clock_.next_due_s()) {
             sleep_until(clock_.next_due_s());
             now_s = steady_s();

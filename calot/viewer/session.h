@@ -46,8 +46,9 @@ class Session {
 
     const simulation::Setup& setup() const { return core_.run().setup(); }
     const Theatre& theatre() const { return core_.theatre(); }
-    /// How the thread is scheduled, for people: "real-time (SCHED_FIFO)", or why not.
-    std::string scheduling() const;
+    /// Whether the thread got real-time priority (SCHED_FIFO); if it did not, why, for people.
+    bool real_time() const { return scheduling_ == 1; }
+    std::string why_not_real_time() const;
 
   private:
     void work();

@@ -10,7 +10,7 @@ namespace calot::viewer {
 namespace {
 
 constexpr double kJawTime_s = 0.25;      ///< from wide open to closed
-constexpr double kJawOpen = 0.7;         ///< as far as the trainee opens them
+constexpr double kJawOpen = 0.5;         ///< as far as the trainee opens them
 constexpr double kBoilingTime_s = 0.08;  ///< over which the sizzle is averaged
 
 Vec3 landmark_or(const anatomy::Anatomy& anatomy, const char* name, const Vec3& otherwise) {

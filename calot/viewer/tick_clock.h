@@ -43,6 +43,8 @@ class RateMeter {
     /// One event, or `count` of them, at `now_s` (not before the last).
     void add(double now_s, std::int64_t count = 1);
     double per_s() const { return per_s_; }
+    /// The next event begins a new second: what lies between was a pause.
+    void restart() { since_s_ = -1.0, count_ = 0; }
 
   private:
     static constexpr double kSpan_s = 0.5;

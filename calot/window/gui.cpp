@@ -1,5 +1,6 @@
 #include "calot/window/gui.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -25,8 +26,9 @@ std::string font_file() {
 ImFont* load_font(const std::string& file, float pixels) {
     ImGuiIO& io = ImGui::GetIO();
     if (!file.empty()) {
-        // Latin with its accents, punctuation, Greek (ohms), arrows.
-        static const ImWchar ranges[] = {0x20, 0x17f, 0x370, 0x3ff, 0x2010, 0x2044, 0x2126, 0x2126, 0};
+        // Latin with its accents, Greek, punctuation, ohms, minus and comparisons.
+        static const ImWchar ranges[] = {0x20,   0x17f,  0x370,  0x3ff,  0x2010, 0x2044, 0x2126,
+                                         0x2126, 0x2212, 0x2212, 0x2260, 0x2265, 0};
         if (ImFont* font = io.Fonts->AddFontFromFileTTF(file.c_str(), pixels, nullptr, ranges)) return font;
     }
     ImFontConfig config;
@@ -100,9 +102,24 @@ void Gui::begin_frame(bool mouse, bool keys) {
     ImGui::NewFrame();
 }
 
+void Gui::end_unseen_frame() {
+    ImGui::EndFrame();
+}
+
 void Gui::end_frame() {
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void progress(const Gui& gui, double share, const ImVec4& tint) {
+    const float u = gui.unit(), width = ImGui::GetContentRegionAvail().x, height = 6.0f * u;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const auto filled = static_cast<float>(std::clamp(share, 0.0, 1.0)) * width;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(at, ImVec2(at.x + width, at.y + height), ImGui::GetColorU32(ImGuiCol_FrameBg), 3.0f * u);
+    if (filled >= 1.0f)
+        list->AddRectFilled(at, ImVec2(at.x + filled, at.y + height), ImGui::GetColorU32(tint), 3.0f * u);
+    ImGui::Dummy(ImVec2(width, height + 4.0f * u));
 }
 
 ImVec2 middle_of_screen() {
@@ -139,6 +156,11 @@ void name_and_value(const std::string& name, const std::string& value, const ImV
     if (together) ImGui::SameLine();
     ImGui::SetCursorPosX(start + room - width);
     ImGui::TextColored(value_colour, "%s", value.c_str());
+}
+
+std::string capitalised(std::string words) {
+    if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
+    return words;
 }
 
 void wrapped(const std::string& words, const ImVec4& tint) {

@@ -36,7 +36,8 @@ class Gui {
 
     /// `mouse`: it is not the hand; `keys`: arrows and Enter go about the panels.
     void begin_frame(bool mouse, bool keys);
-    void end_frame();  ///< draws into the bound frame buffer
+    void end_frame();         ///< draws into the bound frame buffer
+    void end_unseen_frame();  ///< draws nothing
 
     const Fonts& fonts() const { return fonts_; }
     float unit() const { return unit_; }  ///< pixels that a length of 1 is at usual resolution
@@ -53,6 +54,10 @@ bool main_button(const Gui& gui, const std::string& label, ImVec2 size);
 void heading(const Gui& gui, const std::string& words);
 /// Name on the left, value on the right; below one another where both do not fit.
 void name_and_value(const std::string& name, const std::string& value, const ImVec4& value_colour = colour::kText);
+/// A thin bar, filled from the left as far as `share` says.
+void progress(const Gui& gui, double share, const ImVec4& tint = colour::kAccent);
+/// With a capital at its beginning, where that is a Latin letter.
+std::string capitalised(std::string words);
 /// Text in lines as long as there is room.
 void wrapped(const std::string& words, const ImVec4& tint = colour::kText);
 

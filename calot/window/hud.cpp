@@ -19,6 +19,11 @@ ImVec4 mood_colour(HudLine::Mood mood) {
     return mood == HudLine::Mood::good ? colour::kGood : mood == HudLine::Mood::bad ? colour::kBad : colour::kText;
 }
 
+/// Up to its first comma: what follows says how it is measured.
+std::string short_name(const std::string& name) {
+    return name.substr(0, name.find(','));
+}
+
 /// One half of the generator: its colour, its setting, lit while its pedal is down.
 void pedal_box(const Gui& gui, const char* name, double setting_W, const ImVec4& tint, bool lit, float width) {
     const float u = gui.unit(), height = 86.0f * u;
@@ -38,6 +43,15 @@ void pedal_box(const Gui& gui, const char* name, double setting_W, const ImVec4&
     ImGui::Dummy(ImVec2(width, height));
 }
 
+/// Beneath the two pedals: their units tell them apart.
+void two_values(const std::string& left, const std::string& right) {
+    const float room = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
+    ImGui::TextUnformatted(left.c_str());
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(start + room - ImGui::CalcTextSize(right.c_str()).x);
+    ImGui::TextUnformatted(right.c_str());
+}
+
 void draw_generator(const Gui& gui, const Language& text, const HudContent& content) {
     const float u = gui.unit(), width = 300.0f * u;
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -52,16 +66,14 @@ void draw_generator(const Gui& gui, const Language& text, const HudContent& cont
         ImGui::SameLine(0.0f, 8.0f * u);
         pedal_box(gui, text("generator.coag").c_str(), content.settings.coag_W, colour::kBlue, coagulating, half);
         const tissue::GeneratorState& g = shot.generator;
-        name_and_value(text("generator.power"), fmt::format("{:.1f} W", g.power_W));
+        const bool loaded = g.impedance_Ohm > 0.0 && shot.input.pedal;
+        two_values(fmt::format("{:.1f} W", g.power_W),
+                   loaded ? fmt::format("{:.0f} \xce\xa9", g.impedance_Ohm) : "\xe2\x80\x93 \xce\xa9");
+        two_values(fmt::format("{:.0f} V", g.voltage_V), fmt::format("{:.0f} mA", 1e3 * g.current_A));
         if (shot.input.pedal && g.limit >= 0 && g.limit <= 3)  // what the generator is up against
             name_and_value(text("generator.limit"), text("generator.limit." + std::to_string(g.limit)));
         else
             name_and_value(text("generator.limit"), "\xe2\x80\x93");
-        name_and_value(text("generator.voltage"), fmt::format("{:.0f} V", g.voltage_V));
-        name_and_value(text("generator.current"), fmt::format("{:.0f} mA", 1e3 * g.current_A));
-        name_and_value(text("generator.impedance"), g.impedance_Ohm > 0.0 && shot.input.pedal
-                                              ? fmt::format("{:.0f} \xce\xa9", g.impedance_Ohm)
-                                              : "\xe2\x80\x93");
     }
     ImGui::End();
 }
@@ -75,7 +87,14 @@ void draw_exercise(const Gui& gui, const Language& text, const HudContent& conte
         name_and_value(text("hud.time"), clock_text(content.snapshot.time_s));
         name_and_value(text("hud.force"), fmt::format("{:.2f} N", glm::length(content.snapshot.hook_force_N)),
              glm::length(content.snapshot.hook_force_N) > 3.0 ? colour::kBad : colour::kText);
-        for (const HudLine& each : content.lines) name_and_value(text(each.name), text(each.value), mood_colour(each.mood));
+        for (const HudLine& each : content.lines) {
+            const bool goal = each.share >= 0.0;
+            if (goal) ImGui::PushFont(gui.fonts().small);
+            name_and_value(short_name(text(each.name)), text(each.value), mood_colour(each.mood));
+            if (!goal) continue;
+            ImGui::PopFont();
+            progress(gui, each.share, each.mood == HudLine::Mood::good ? colour::kGood : colour::kAccent);
+        }
     }
     ImGui::End();
 }
@@ -97,10 +116,15 @@ void draw_haptics(const Language& text, const HapticsFigures& haptics) {
 void draw_pace(const Gui& gui, const Language& text, const HudContent& content) {
     const float u = gui.unit();
     const viewer::Pace& pace = content.snapshot.pace;
-    const bool slow = pace.ticks_per_s < 985.0;
+    // Nothing is said of a rate before there is one, nor while time stands still.
+    const bool known = pace.ticks_per_s > 0.0 && !content.snapshot.paused, slow = pace.ticks_per_s < 985.0;
     if (begin_panel("pace", ImVec2(kMargin * u, kMargin * u), ImVec2(0.0f, 0.0f), ImVec2(300.0f * u, 0.0f))) {
         ImGui::PushFont(gui.fonts().small);
-        name_and_value(text("pace.physics"), fmt::format("{:.0f} /s", pace.ticks_per_s), slow ? colour::kBad : colour::kGood);
+        if (known)
+            name_and_value(text("pace.physics"), fmt::format("{:.0f} /s", pace.ticks_per_s),
+                           slow ? colour::kBad : colour::kGood);
+        else
+            name_and_value(text("pace.physics"), "\xe2\x80\x93");
         name_and_value(text("pace.tick"), fmt::format("{:.2f} ms", 1e-3 * pace.tick_us));
         name_and_value(text("pace.late"), fmt::format("{}", pace.late_ticks));
         name_and_value(text("pace.pictures"), fmt::format("{:.0f} /s", content.figures.pictures_per_s));
@@ -121,7 +145,7 @@ void draw_banner(const Gui& gui, const Language& text, const HudContent& content
     if (!shot.status.ok) {
         message = fmt::format("{} ({})", text("banner.stopped"), shot.status.field);
         tint = colour::kBad;
-    } else if (shot.time_s > 1.0 && shot.pace.ticks_per_s > 0.0 && shot.pace.ticks_per_s < 960.0) {
+    } else if (!shot.paused && shot.time_s > 1.0 && shot.pace.ticks_per_s > 0.0 && shot.pace.ticks_per_s < 960.0) {
         message = fmt::format("{} {:.0f} %", text("banner.slow"), 0.1 * shot.pace.ticks_per_s);
     } else if (content.left_hand) {
         message = text("banner.left_hand");

@@ -14,7 +14,7 @@ using viewer::Mark;
 
 namespace {
 
-constexpr float kMargin = 16.0f;
+constexpr float kMargin = 16.0f, kPanelHeight = 160.0f;
 constexpr double kStep_s = 5.0;
 
 const ImVec4& colour_of(Mark::Kind kind) {
@@ -75,7 +75,7 @@ void draw_moments(const Gui& gui, const Language& text, const RewindContent& con
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float row = ImGui::GetStyle().FramePadding.y * 2.0f + gui.fonts().small->FontSize;
     const float whole = static_cast<float>(content.marks.size()) * (row + ImGui::GetStyle().ItemSpacing.y) + 74.0f * u;
-    const float height = std::min(whole, screen.y - below - 3.0f * kMargin * u);
+    const float height = std::min(whole, screen.y - below - 2.0f * kMargin * u);
     if (begin_panel("moments", ImVec2(screen.x - kMargin * u, kMargin * u), ImVec2(1.0f, 0.0f),
                     ImVec2(std::min(400.0f * u, 0.42f * screen.x), height), 0.8f)) {
         ImGui::TextColored(colour::kAccent, "%s", text("rewind.moments").c_str());
@@ -92,6 +92,9 @@ void draw_moments(const Gui& gui, const Language& text, const RewindContent& con
                 state.playing = false;
             }
             ImGui::PopStyleColor();
+            const float room = ImGui::GetItemRectSize().x - 2.0f * ImGui::GetStyle().FramePadding.x;
+            if (ImGui::IsItemHovered() && ImGui::CalcTextSize(label.c_str()).x > room)
+                ImGui::SetTooltip("%s", label.c_str());
             ImGui::PopID();
         }
         ImGui::PopStyleVar();
@@ -107,45 +110,63 @@ std::string describe(const Language& text, const Mark& mark) {
     std::string words = text(mark.text);
     const std::size_t at = words.find("{0}");
     if (at != std::string::npos) words.replace(at, 3, text(mark.subject));
-    return words;
+    return capitalised(words);
 }
+
+float rewind_height(const Gui& gui) {
+    return (kPanelHeight + 2.0f * kMargin) * gui.unit();
+}
+
+namespace {
+
+/// The moment, and the buttons beside it.
+RewindChoice draw_controls(const Gui& gui, const Language& text, const RewindContent& content, RewindState& state) {
+    const float u = gui.unit(), row = 44.0f * u, left = ImGui::GetCursorPosX(), top = ImGui::GetCursorPosY();
+    RewindChoice choice = RewindChoice::none;
+    ImGui::PushFont(gui.fonts().large);
+    ImGui::TextColored(colour::kAccent, "%s", fine_clock_text(state.at_s).c_str());
+    ImGui::PopFont();
+    ImGui::SameLine();
+    ImGui::SetCursorPosY(top + 11.0f * u);
+    ImGui::TextColored(colour::kFaint, "/ %s", clock_text(content.duration_s).c_str());
+    ImGui::SetCursorPos(ImVec2(left + 200.0f * u, top));
+    const auto step = [&](const std::string& label, double by_s) {
+        if (ImGui::Button(label.c_str(), ImVec2(76.0f * u, row))) state.at_s += by_s, state.playing = false;
+        ImGui::SameLine();
+    };
+    step(text("rewind.step_back"), -kStep_s);
+    if (ImGui::Button(text(state.playing ? "rewind.stop" : "rewind.play").c_str(), ImVec2(120.0f * u, row)))
+        state.playing = !state.playing;
+    ImGui::SameLine();
+    step(text("rewind.step_on"), kStep_s);
+    const float back = ImGui::CalcTextSize(text("rewind.back").c_str()).x + 40.0f * u;
+    const float take = ImGui::CalcTextSize(text("rewind.take_over").c_str()).x + 52.0f * u;
+    ImGui::SetCursorPosX(ImGui::GetWindowWidth() - ImGui::GetStyle().WindowPadding.x - back - take -
+                         ImGui::GetStyle().ItemSpacing.x);
+    if (ImGui::Button(text("rewind.back").c_str(), ImVec2(back, row))) choice = RewindChoice::back;
+    ImGui::SameLine();
+    if (main_button(gui, text("rewind.take_over"), ImVec2(take, row))) choice = RewindChoice::take_over;
+    return choice;
+}
+
+}  // namespace
 
 RewindChoice draw_rewind(const Gui& gui, const Language& text, const RewindContent& content, RewindState& state) {
     const float u = gui.unit();
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     RewindChoice choice = RewindChoice::none;
-    const float row = 52.0f * u, height = 206.0f * u;
     if (begin_panel("rewind", ImVec2(kMargin * u, screen.y - kMargin * u), ImVec2(0.0f, 1.0f),
-                    ImVec2(screen.x - 2.0f * kMargin * u, height), 0.86f)) {
-        ImGui::PushFont(gui.fonts().large);
-        ImGui::TextColored(colour::kAccent, "%s", fine_clock_text(state.at_s).c_str());
-        ImGui::PopFont();
-        ImGui::SameLine();
-        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 12.0f * u);
-        ImGui::TextColored(colour::kFaint, "/ %s", clock_text(content.duration_s).c_str());
-        ImGui::SameLine(0.0f, 24.0f * u);
-        const bool there = std::fabs(content.shown_s - state.at_s) < 0.25 || state.playing;
-        ImGui::TextColored(colour::kFaint, "%s", text(there ? "rewind.hint" : "rewind.seeking").c_str());
+                    ImVec2(screen.x - 2.0f * kMargin * u, kPanelHeight * u), 0.86f)) {
+        choice = draw_controls(gui, text, content, state);
         draw_timeline(gui, text, content, state);
-        const auto step = [&](const std::string& label, double by_s) {
-            if (ImGui::Button(label.c_str(), ImVec2(84.0f * u, row))) state.at_s += by_s, state.playing = false;
-            ImGui::SameLine();
-        };
-        step(text("rewind.step_back"), -kStep_s);
-        if (ImGui::Button(text(state.playing ? "rewind.stop" : "rewind.play").c_str(), ImVec2(120.0f * u, row)))
-            state.playing = !state.playing;
-        ImGui::SameLine();
-        step(text("rewind.step_on"), kStep_s);
-        const float back = ImGui::CalcTextSize(text("rewind.back").c_str()).x + 48.0f * u;
-        const float take = ImGui::CalcTextSize(text("rewind.take_over").c_str()).x + 64.0f * u;
-        ImGui::SetCursorPosX(ImGui::GetWindowWidth() - ImGui::GetStyle().WindowPadding.x - back - take -
-                             ImGui::GetStyle().ItemSpacing.x);
-        if (ImGui::Button(text("rewind.back").c_str(), ImVec2(back, row))) choice = RewindChoice::back;
-        ImGui::SameLine();
-        if (main_button(gui, text("rewind.take_over"), ImVec2(take, row))) choice = RewindChoice::take_over;
+        const bool there = std::fabs(content.shown_s - state.at_s) < 0.25 || state.playing;
+        ImGui::PushFont(gui.fonts().small);
+        ImGui::TextColored(colour::kFaint, "%s",
+                           text(content.older ? "rewind.older" : there ? "rewind.hint" : "rewind.seeking").c_str());
+        ImGui::PopFont();
     }
     ImGui::End();
-    draw_moments(gui, text, content, state, height);
+    draw_moments(gui, text, content, state, rewind_height(gui));
     if (state.playing && state.at_s >= content.duration_s) state.playing = false;
     state.at_s = std::clamp(state.at_s, 0.0, content.duration_s);
     return choice;

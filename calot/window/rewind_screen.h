@@ -20,12 +20,16 @@ struct RewindContent {
     double shown_s = 0.0;  ///< of the picture
     const std::vector<viewer::PedalSpan>& pedal;
     const std::vector<viewer::Mark>& marks;
+    bool older = false;  ///< there are no checkpoints to go back to
 };
 
 enum class RewindChoice { none, take_over, back };
 /// Moves state.at_s; whoever calls it sees to the picture and to the playing.
 RewindChoice draw_rewind(const Gui& gui, const viewer::Language& text, const RewindContent& content,
                          RewindState& state);
+
+/// Pixels at the lower edge that the timeline takes.
+float rewind_height(const Gui& gui);
 
 /// What is shown while the run is being opened.
 void draw_opening(const Gui& gui, const viewer::Language& text, double waited_s);

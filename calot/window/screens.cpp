@@ -62,14 +62,15 @@ bool choose_preset(const Gui& gui, const Language& text, Settings& settings) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextColored(colour::kFaint, "%s", text("settings.presets").c_str());
     float at = 250.0f * gui.unit();
-    const float width = (ImGui::GetWindowWidth() - at - ImGui::GetStyle().WindowPadding.x) /
+    const float gap = 4.0f * gui.unit();
+    const float width = (ImGui::GetContentRegionMax().x - at + gap) /
                             static_cast<float>(tissue::kGeneratorPresets.size()) -
-                        4.0f * gui.unit();
+                        gap;
     ImGui::PushFont(gui.fonts().small);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f, ImGui::GetStyle().FramePadding.y));
     for (const tissue::GeneratorPreset& preset : tissue::kGeneratorPresets) {
         ImGui::SameLine(at);
-        at += width + 4.0f * gui.unit();
+        at += width + gap;
         if (!ImGui::Button(preset.name, ImVec2(width, 0.0f))) continue;
         changed = true;
         if (preset.mode == tissue::GeneratorMode::coag) {
@@ -127,49 +128,91 @@ bool choose_tier(const Gui& gui, const Language& text, const std::string& tier_n
 bool draw_settings(const Gui& gui, const Language& text, const std::vector<std::string>& languages,
                    const std::string& tier_now, Settings& settings, bool& changed) {
     bool close = false;
-    if (begin_panel("settings", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(640.0f * gui.unit(), 0.0f), 0.94f)) {
+    const float u = gui.unit(), done = 52.0f * u;
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const ImVec2 size(std::min(660.0f * u, screen.x - 24.0f * u), std::min(624.0f * u, screen.y - 24.0f * u));
+    if (begin_panel("settings", middle_of_screen(), ImVec2(0.5f, 0.5f), size, 0.94f)) {
         heading(gui, text("settings.title"));
+        ImGui::BeginChild("rows", ImVec2(0.0f, -done - ImGui::GetStyle().ItemSpacing.y));
         changed |= choose_language(gui, text, languages, settings);
         changed |= choose_tier(gui, text, tier_now, settings);
         changed |= choose_preset(gui, text, settings);
         changed |= slider(gui, text("settings.cut"), settings.cut_W, 5.0f, 100.0f, "%.0f W");
         changed |= slider(gui, text("settings.coag"), settings.coag_W, 5.0f, 80.0f, "%.0f W");
-        changed |= ImGui::Checkbox(text("settings.blend").c_str(), &settings.blended_cut);
         changed |= slider(gui, text("settings.mouse"), settings.hands.mouse, 0.2f, 2.0f, "%.2f");
         double wheel_mm = 1e3 * settings.hands.wheel_m;
         if (slider(gui, text("settings.wheel"), wheel_mm, 0.3f, 5.0f, "%.1f mm")) {
             settings.hands.wheel_m = 1e-3 * wheel_mm;
             changed = true;
         }
-        changed |= ImGui::Checkbox(text("settings.invert_wheel").c_str(), &settings.hands.invert_wheel);
         changed |= slider(gui, text("settings.volume"), settings.volume, 0.0f, 1.0f, "%.2f");
+        changed |= ImGui::Checkbox(text("settings.blend").c_str(), &settings.blended_cut);
+        ImGui::SameLine(250.0f * u);
+        changed |= ImGui::Checkbox(text("settings.invert_wheel").c_str(), &settings.hands.invert_wheel);
         changed |= ImGui::Checkbox(text("settings.mute").c_str(), &settings.muted);
+        ImGui::SameLine(250.0f * u);
         changed |= ImGui::Checkbox(text("settings.pace").c_str(), &settings.show_pace);
-        ImGui::Dummy(ImVec2(1.0f, 6.0f * gui.unit()));
+        ImGui::EndChild();
         close = wide_button(gui, text("settings.close"));
     }
     ImGui::End();
     return close;
 }
 
-DebriefChoice draw_debrief(const Gui& gui, const Language& text, const viewer::Debrief& debrief) {
+namespace {
+
+const ImVec4& colour_of(viewer::HudLine::Mood mood) {
+    return mood == viewer::HudLine::Mood::good  ? colour::kGood
+           : mood == viewer::HudLine::Mood::bad ? colour::kBad
+                                                : colour::kText;
+}
+
+/// What it came to, large, and whether that is the goal.
+void draw_outcome(const Gui& gui, const Language& text, const viewer::HudLine& outcome) {
+    ImGui::PushFont(gui.fonts().title);
+    ImGui::TextColored(colour_of(outcome.mood), "%s", outcome.value.c_str());
+    ImGui::PopFont();
+    ImGui::SameLine(0.0f, 20.0f * gui.unit());
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 26.0f * gui.unit());
+    ImGui::TextColored(colour::kFaint, "%s", text(outcome.name).c_str());
+    ImGui::Dummy(ImVec2(1.0f, 4.0f * gui.unit()));
+}
+
+/// A measure, what it was, and what it brought.
+void draw_part(const Gui& gui, const Language& text, const viewer::HudLine& part) {
+    if (part.detail.empty()) {
+        name_and_value(capitalised(text(part.name)), text(part.value), colour_of(part.mood));
+        return;
+    }
+    const float start = ImGui::GetCursorPosX(), room = ImGui::GetContentRegionAvail().x;
+    const auto at_right = [&](const std::string& words, float right, const ImVec4& tint) {
+        ImGui::SameLine();
+        ImGui::SetCursorPosX(start + right - ImGui::CalcTextSize(words.c_str()).x);
+        ImGui::TextColored(tint, "%s", words.c_str());
+    };
+    ImGui::TextColored(colour::kFaint, "%s", text(part.name).c_str());
+    at_right(part.detail, room - 80.0f * gui.unit(), colour::kText);
+    at_right(part.value, room, colour_of(part.mood));
+}
+
+}  // namespace
+
+DebriefChoice draw_debrief(const Gui& gui, const Language& text, const viewer::Debrief& debrief,
+                           bool report_ready) {
     DebriefChoice choice = DebriefChoice::none;
     const float u = gui.unit(), row = 52.0f * u, spacing = ImGui::GetStyle().ItemSpacing.y;
     const bool rewind = !debrief.past.recording.empty();
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const float width = std::min(640.0f * u, screen.x - 24.0f * u);
+    const float width = std::min((debrief.outcome.value.empty() ? 640.0f : 760.0f) * u, screen.x - 24.0f * u);
     if (begin_panel("debrief", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(width, 0.0f), 0.92f)) {
         heading(gui, text(debrief.title.empty() ? "debrief.title" : debrief.title));
+        if (!debrief.outcome.value.empty()) draw_outcome(gui, text, debrief.outcome);
         const float line = ImGui::GetTextLineHeightWithSpacing();
         const float below = (rewind ? 3.0f : 2.0f) * (row + spacing) + ImGui::GetCursorPosY() + 60.0f * u;
         const float lines = std::min(line * static_cast<float>(debrief.lines.size()) + 4.0f * u, screen.y - below);
         if (!debrief.lines.empty()) {
             ImGui::BeginChild("lines", ImVec2(0.0f, std::max(3.0f * line, lines)));
-            for (const viewer::HudLine& each : debrief.lines)
-                name_and_value(text(each.name), text(each.value),
-                               each.mood == viewer::HudLine::Mood::good  ? colour::kGood
-                               : each.mood == viewer::HudLine::Mood::bad ? colour::kBad
-                                                                         : colour::kText);
+            for (const viewer::HudLine& each : debrief.lines) draw_part(gui, text, each);
             ImGui::EndChild();
         }
         ImGui::Dummy(ImVec2(1.0f, 4.0f * u));
@@ -182,7 +225,9 @@ DebriefChoice draw_debrief(const Gui& gui, const Language& text, const viewer::D
             if (ImGui::Button(text(key).c_str(), ImVec2(half, row))) choice = what;
         };
         button(!debrief.questionnaire.statements.empty(), "debrief.questions", DebriefChoice::questions);
-        button(!debrief.report.empty(), "debrief.report", DebriefChoice::report);
+        ImGui::BeginDisabled(!report_ready);
+        button(!debrief.report.empty(), report_ready ? "debrief.report" : "debrief.report_soon", DebriefChoice::report);
+        ImGui::EndDisabled();
         button(true, "debrief.again", DebriefChoice::again);
         button(true, "debrief.menu", DebriefChoice::menu);
     }

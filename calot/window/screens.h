@@ -26,7 +26,8 @@ bool draw_settings(const Gui& gui, const viewer::Language& text, const std::vect
                    const std::string& tier_now, Settings& settings, bool& changed);
 
 enum class DebriefChoice { none, rewind, questions, again, menu, report };
-DebriefChoice draw_debrief(const Gui& gui, const viewer::Language& text, const viewer::Debrief& debrief);
+DebriefChoice draw_debrief(const Gui& gui, const viewer::Language& text, const viewer::Debrief& debrief,
+                           bool report_ready);
 
 /// True when it is to be closed.
 bool draw_trouble(const Gui& gui, const viewer::Language& text, const std::string& message);

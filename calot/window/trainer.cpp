@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include <epoxy/gl.h>
@@ -19,7 +18,7 @@ namespace {
 
 constexpr double kIdleFrame_s = 1.0 / 30.0;  ///< the window is drawn at least so often
 constexpr double kTurn_s = 2e-3;             ///< the devices are read at least so often
-constexpr double kAhead_s = 0.3;             ///< the timeline may be before the picture while it plays
+constexpr int kMostUnseen = 3;
 constexpr double kReady_s = 3.0;             ///< to find the hands again after a rewind
 
 }  // namespace
@@ -32,6 +31,7 @@ Trainer::Trainer(const TrainerOptions& options)
       languages_(viewer::Language::available(data_ + "/lang")),
       window_(options.width, options.height, "Calot", options.fullscreen),
       gui_(window_.handle(), window_.content_scale()),
+      backdrop_(data_ + "/backdrop.jpg"),
       pictures_(window_.handle(), window_.renderer()) {
     if (!options_.language.empty()) settings_.language = options_.language;
     if (std::find(languages_.begin(), languages_.end(), settings_.language) == languages_.end()) {
@@ -106,12 +106,20 @@ void Trainer::draw_window() {
     int width = 0, height = 0;
     window_.size(width, height);
     if (width == 0 || height == 0) return;
+    // A panel finds its size in its first frame and is seen in its second: a new screen is drawn twice, lest it be empty.
+    for (int unseen = 0;; ++unseen) {
+        const Seen drawn{screen_, help_, settings_open_};
+        gui_.begin_frame(!window_.captured(), screen_ != Screen::rewind);
+        draw_picture(width, height);
+        draw_screens();
+        const bool known = std::exchange(seen_, drawn) == std::optional(drawn);
+        const bool stays = drawn == Seen{screen_, help_, settings_open_};
+        if (unseen == kMostUnseen || (known && stays)) break;
+        gui_.end_unseen_frame();
+    }
     glViewport(0, 0, width, height);
     glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT);
-    gui_.begin_frame(!window_.captured(), screen_ != Screen::rewind);
-    draw_picture(width, height);
-    draw_screens();
     gui_.end_frame();
     window_.type(ImGui::GetIO().WantTextInput);
     if (std::exchange(picture_wanted_, false)) take_picture(width, height);
@@ -256,78 +264,29 @@ void Trainer::ask_for_picture() {
     wish.camera = scope_->camera();
     wish.lens = lens_.look();
     window_.size(wish.width, wish.height);
+    if (screen_ == Screen::rewind) wish.height = picture_height(wish.height);
     wish.tier = settings_.tier;
     if (wish == wished_) return;
     wished_ = wish;
     pictures_.wish(wish);
 }
 
+/// Above the timeline, so that it hides nothing.
+int Trainer::picture_height(int height) const {
+    return std::max(64, height - static_cast<int>(rewind_height(gui_)));
+}
+
 void Trainer::draw_picture(int width, int height) {
     const Picture& picture = pictures_.picture();
     const bool behind = screen_ == Screen::start || screen_ == Screen::loading || screen_ == Screen::trouble;
-    if (behind || !scope_ || picture.texture == 0) return;
-    ImGui::GetBackgroundDrawList()->AddImage(
-        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), ImVec2(0.0f, 0.0f),
-        ImVec2(static_cast<float>(width), static_cast<float>(height)), ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
-}
-
-void Trainer::open_rewind(const viewer::Past& past, Screen back, double from_end_s) {
-    past_ = past;
-    rewind_back_ = back;
-    rewind_from_end_s_ = from_end_s;
-    loading_since_s_ = now_s_;
-    replay_ = std::make_unique<viewer::Replay>(past.recording, setup_);
-    screen_ = Screen::opening;
-}
-
-void Trainer::close_rewind() {
-    if (!replay_) return;
-    pictures_.show(nullptr);
-    replay_.reset();
-}
-
-/// The replay follows the timeline, as far as it can.
-void Trainer::rewind(double dt_s) {
-    if (const std::string trouble = replay_->trouble(); !trouble.empty()) {
-        close_rewind();
-        trouble_ = trouble;
-        screen_ = Screen::trouble;
+    if (behind || !scope_ || picture.texture == 0) {
+        backdrop_.draw();
         return;
     }
-    if (!replay_->ready()) return;
-    const double tick_s = replay_->setup()->model.tick_s;
-    const double duration_s = static_cast<double>(replay_->ticks()) * tick_s;
-    if (screen_ == Screen::opening) {
-        screen_ = Screen::rewind;
-        setup_ = replay_->setup();
-        if (!scope_) scope_.emplace(setup_->camera);
-        rewind_ = {std::max(0.0, duration_s - rewind_from_end_s_), false};
-        lens_ = {};
-        pictures_.show(&replay_->snapshots());
-        for (const Command key : {Command::play, Command::earlier, Command::later, Command::first, Command::last,
-                                  Command::enter})
-            window_.take(key);  // from before
-    }
-    if (rewind_.playing)  // no further ahead of the picture than the eye forgives
-        rewind_.at_s = std::min({rewind_.at_s + dt_s, static_cast<double>(replay_->shown()) * tick_s + kAhead_s,
-                                 duration_s});
-    replay_->wish(std::llround(rewind_.at_s / tick_s));
-}
-
-/// Goes on from the moment on the timeline, as a new session.
-void Trainer::take_over() {
-    const std::int64_t tick = std::clamp<std::int64_t>(std::llround(rewind_.at_s / setup_->model.tick_s), 0, replay_->ticks());
-    close_rewind();
-    resumed_ = true;
-    loader_ = std::make_unique<viewer::Loader>([this, resume = past_.resume, tick, setup = setup_] {
-        viewer::Loader::Start start;
-        std::tie(start.run, attempt_) = resume(tick, setup);
-        start.observers = {attempt_};
-        return start;
-    });
-    loading_since_s_ = now_s_;
-    loading_step_ = viewer::Loader::Step::tissue;
-    screen_ = Screen::loading;
+    ImGui::GetBackgroundDrawList()->AddImage(
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), ImVec2(0.0f, 0.0f),
+        ImVec2(static_cast<float>(width),
+               static_cast<float>(screen_ == Screen::rewind ? picture_height(height) : height)), ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
 }
 
 void Trainer::take_picture(int width, int height) {

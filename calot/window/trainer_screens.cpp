@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,10 +17,7 @@ namespace calot::window {
 namespace {
 
 constexpr double kFullSizzle_kg_per_s = 2.0e-5;
-constexpr double kKeyStep_s = 1.0;
 constexpr double kBackFromPause_s = 5.0;  ///< where the timeline stands at first after a pause
-// The mouse as the hand on the laparoscope, while nothing is held.
-constexpr double kTurnPerHeight_rad = 0.35, kLensPerHeight_rad = 3.0, kDeeperPerNotch_m = 4e-3;
 
 }  // namespace
 
@@ -62,7 +60,7 @@ void Trainer::draw_screens() {
             if (!settings_open_ && !help_) handle(draw_pause(gui_, text_, attempt_ != nullptr));
             break;
         case Screen::debrief:
-            handle(draw_debrief(gui_, text_, debrief_));
+            handle(draw_debrief(gui_, text_, debrief_, std::filesystem::exists(debrief_.report)));
             break;
         case Screen::questions:
             draw_questions();
@@ -106,42 +104,6 @@ void Trainer::draw_start_screen() {
     if (choice.start) load(selection_.exercise);
 }
 
-void Trainer::draw_rewind_screen() {
-    const double tick_s = setup_->model.tick_s;
-    handle(draw_rewind(gui_, text_,
-                       {static_cast<double>(replay_->ticks()) * tick_s, static_cast<double>(replay_->shown()) * tick_s,
-                        replay_->pedal(), past_.marks},
-                       rewind_));
-    if (screen_ != Screen::rewind) return;
-    look_about();
-    obey_timeline_keys();
-}
-
-void Trainer::obey_timeline_keys() {
-    const double before_s = rewind_.at_s, end_s = static_cast<double>(replay_->ticks()) * setup_->model.tick_s;
-    if (window_.take(Command::earlier)) rewind_.at_s -= kKeyStep_s;
-    if (window_.take(Command::later)) rewind_.at_s += kKeyStep_s;
-    if (window_.take(Command::first)) rewind_.at_s = 0.0;
-    if (window_.take(Command::last)) rewind_.at_s = end_s;
-    rewind_.at_s = std::clamp(rewind_.at_s, 0.0, end_s);
-    if (rewind_.at_s != before_s) rewind_.playing = false;
-    if (window_.take(Command::play)) rewind_.playing = !rewind_.playing;
-    if (window_.take(Command::enter)) take_over();
-}
-
-/// The mouse turns the laparoscope where no panel is under it.
-void Trainer::look_about() {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantCaptureMouse) return;
-    const auto height = static_cast<double>(io.DisplaySize.y);
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Left))
-        scope_->turn(-kTurnPerHeight_rad * static_cast<double>(io.MouseDelta.x) / height,
-                     kTurnPerHeight_rad * static_cast<double>(io.MouseDelta.y) / height);
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Right))
-        scope_->rotate_lens(kLensPerHeight_rad * static_cast<double>(io.MouseDelta.x) / height);
-    scope_->advance(kDeeperPerNotch_m * static_cast<double>(io.MouseWheel));
-}
-
 void Trainer::draw_questions() {
     const QuestionnaireChoice choice = draw_questionnaire(gui_, text_, debrief_.questionnaire, answers_);
     if (choice == QuestionnaireChoice::none) return;
@@ -181,7 +143,8 @@ PictureFigures Trainer::figures() {
     figures.draw_ms = 1e3 * pictures_.picture().draw_s;
     figures.latency_ms = 1e3 * latency_s_;
     figures.tier = text_("tier." + std::to_string(pictures_.picture().tier));
-    figures.scheduling = session_->scheduling();
+    figures.scheduling = session_->real_time() ? text_("pace.real_time") : text_("pace.normal");
+    if (const std::string why = session_->why_not_real_time(); !why.empty()) figures.scheduling += ": " + why;
     figures.haptics = haptics_figures();
     return figures;
 }
@@ -229,16 +192,12 @@ void Trainer::handle(PauseChoice choice) {
 void Trainer::handle(DebriefChoice choice) {
     if (choice == DebriefChoice::again) load(exercise_);
     if (choice == DebriefChoice::menu) screen_ = Screen::start;
-    if (choice == DebriefChoice::report) open_page(debrief_.report);
+    if (choice == DebriefChoice::report && !open_page(debrief_.report)) {
+        trouble_ = fmt::format("{}\n{}", text_("debrief.open_it"), debrief_.report);
+        screen_ = Screen::trouble;
+    }
     if (choice == DebriefChoice::questions) screen_ = Screen::questions;
     if (choice == DebriefChoice::rewind) open_rewind(debrief_.past, Screen::debrief, 0.0);
-}
-
-void Trainer::handle(RewindChoice choice) {
-    if (choice == RewindChoice::take_over) take_over();
-    if (choice != RewindChoice::back) return;
-    close_rewind();
-    screen_ = rewind_back_;
 }
 
 }  // namespace calot::window

@@ -2,6 +2,7 @@
 // The trainer's window: its screens, the session that runs behind them, and the loop that draws both.
 
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "calot/viewer/lens.h"
 #include "calot/viewer/loader.h"
 #include "calot/viewer/replay.h"
+#include "calot/window/backdrop.h"
 #include "calot/window/glfw_window.h"
 #include "calot/window/gui.h"
 #include "calot/window/hud.h"
@@ -51,6 +53,8 @@ class Trainer {
     void draw_questions();
     void look_about();
     void obey_timeline_keys();
+    void take_marks();
+    int picture_height(int height) const;
     void handle(PauseChoice choice);
     void handle(DebriefChoice choice);
     void handle(RewindChoice choice);
@@ -73,6 +77,7 @@ class Trainer {
     std::vector<std::string> languages_;
     GlfwWindow window_;
     Gui gui_;
+    Backdrop backdrop_;
     PictureThread pictures_;
     Sound sound_;
 
@@ -100,6 +105,7 @@ class Trainer {
     // Rewinding.
     std::unique_ptr<viewer::Replay> replay_;
     viewer::Past past_;
+    std::future<std::vector<viewer::Mark>> marks_;  ///< being found
     RewindState rewind_;
     Screen rewind_back_ = Screen::debrief;
     double rewind_from_end_s_ = 0.0;
@@ -111,6 +117,12 @@ class Trainer {
     double latency_s_ = 0.0;
     std::int64_t answered_ = 0;
     bool focused_ = true;
+    struct Seen {
+        Screen screen = Screen::start;
+        bool help = false, settings = false;
+        bool operator==(const Seen& other) const = default;
+    };
+    std::optional<Seen> seen_;  ///< what the last frame showed
 };
 
 }  // namespace calot::window

@@ -87,6 +87,18 @@ TEST(SceneView, organs_are_meshed_with_their_looks) {
     for (const OrganMesh& organ : scene.organs) EXPECT_GT(organ.mesh.triangles(), 100u);
 }
 
+/// Triangles that do not look the way their normals do.
+int turned_inside_out(const InstrumentMesh& mesh) {
+    int wrong = 0;
+    for (std::size_t t = 0; t < mesh.index.size(); t += 3) {
+        const InstrumentVertex &a = mesh.vertex[mesh.index[t]], &b = mesh.vertex[mesh.index[t + 1]],
+                               &c = mesh.vertex[mesh.index[t + 2]];
+        const Vec3f face = glm::cross(b.world_m - a.world_m, c.world_m - a.world_m);
+        if (glm::length(face) > 1e-10f && glm::dot(face, a.normal + b.normal + c.normal) < 0.0f) ++wrong;
+    }
+    return wrong;
+}
+
 TEST(InstrumentMesh, tubes_keep_their_radius_and_face_outward) {
     const auto capsules = demo::Scene::hook(Vec3(0.0));
     InstrumentMesh mesh;
@@ -102,15 +114,40 @@ TEST(InstrumentMesh, tubes_keep_their_radius_and_face_outward) {
         }
         EXPECT_LT(nearest, 0.3e-3);  // sleeve 0.45 radii thicker than its wire
     }
-    // Triangles look the way their normals do.
-    int wrong = 0;
-    for (std::size_t t = 0; t < mesh.index.size(); t += 3) {
-        const InstrumentVertex &a = mesh.vertex[mesh.index[t]], &b = mesh.vertex[mesh.index[t + 1]],
-                               &c = mesh.vertex[mesh.index[t + 2]];
-        const Vec3f face = glm::cross(b.world_m - a.world_m, c.world_m - a.world_m);
-        if (glm::length(face) > 1e-10f && glm::dot(face, a.normal + b.normal + c.normal) < 0.0f) ++wrong;
+    EXPECT_EQ(turned_inside_out(mesh), 0);
+}
+
+TEST(InstrumentMesh, jaws_meet_where_their_capsules_do_and_face_outward) {
+    for (const double opening : {0.0, 0.6}) {
+        // Jaws of 20 mm along z that open along x, a shaft behind them.
+        std::vector<tissue::Capsule> capsules(3);
+        const double r = 1.25e-3;
+        for (const int side : {0, 1}) {
+            tissue::Capsule& jaw = capsules[static_cast<std::size_t>(side)];
+            const double sign = side == 0 ? 1.0 : -1.0;
+            jaw.a_m = Vec3(sign * r, 0.0, -20e-3);
+            jaw.b_m = jaw.a_m + 20e-3 * Vec3(sign * std::sin(opening), 0.0, std::cos(opening));
+            jaw.radius_m = r;
+        }
+        capsules[2].a_m = Vec3(0.0, 0.0, -22.5e-3);
+        capsules[2].b_m = Vec3(0.0, 0.0, -0.1);
+        capsules[2].radius_m = 2.5e-3;
+        for (tissue::Capsule& capsule : capsules) capsule.instrument = tissue::Instrument::grasper;
+        InstrumentMesh mesh;
+        build_instrument(capsules, mesh);
+        EXPECT_EQ(turned_inside_out(mesh), 0);
+        float furthest = -1.0f, nearest = 1.0f;
+        for (const InstrumentVertex& vertex : mesh.vertex) {
+            EXPECT_NEAR(glm::length(vertex.normal), 1.0f, 1e-4f);
+            furthest = std::max(furthest, vertex.world_m.z);
+            // Beyond the joint, closed jaws touch in the plane between them and do not cross it.
+            if (opening == 0.0 && vertex.world_m.z > -15e-3f) nearest = std::min(nearest, std::fabs(vertex.world_m.x));
+        }
+        EXPECT_NEAR(furthest, capsules[0].b_m.z + r * std::cos(opening), 0.3e-3);
+        if (opening == 0.0) {
+            EXPECT_LT(nearest, 0.05e-3f);
+        }
     }
-    EXPECT_EQ(wrong, 0);
 }
 
 }  // namespace

@@ -127,6 +127,10 @@ TEST(Update, VersionCountsChanges) {
     EXPECT_EQ(surface.version(), before);
     body.remove({body.hexels().front()}, surface);
     EXPECT_GT(surface.version(), before);
+    Surface other(body.model);  // what is drawn after it is not taken for it
+    other.rebuild(body.model, body.state);
+    EXPECT_NE(other.version(), surface.version());
+    EXPECT_NE(other.version(), before);
 }
 
 }  // namespace calot::surface
