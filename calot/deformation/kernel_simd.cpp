@@ -348,11 +348,12 @@ HWY_INLINE void motion_of(const KernelView& k, const Place& at) {
         float* v = k.velocity_m_per_s[row] + i;
         const Lanes gravity = all(k.gravity_step_m_per_s[row]) * gravity_share;
         const Lanes velocity = decay * (load(v) + inverse_mass * impulse + gravity);
-        const Mask moving = hn::And(present, hn::Ge(hn::Abs(velocity.v), all(kRest_m_per_s).v));
+        // What is no number must stay, for check() to find.
+        const Mask moving = hn::AndNot(hn::Lt(hn::Abs(velocity.v), all(kRest_m_per_s).v), present);
         store(where(moving, velocity) + where(ghost, impulse), v);
         float* u = k.displacement_m[row] + i;
         const Lanes moved = load(u) + where(moving, dt * velocity);
-        store(where(hn::Ge(hn::Abs(moved.v), all(kNowhere_m).v), moved), u);
+        store(where(hn::Not(hn::Lt(hn::Abs(moved.v), all(kNowhere_m).v)), moved), u);
     }
 }
 

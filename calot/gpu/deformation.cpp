@@ -191,6 +191,8 @@ GpuSweep Deformation::sweep() const {
     const double stretch = model_->deformation.tear_stretch;
     s.most_squared_stretch = static_cast<float>(stretch * stretch + 2.0 / stretch);  // as KernelView::make
     s.substep_s = host_.substep_s;
+    s.rest_m_per_s = deformation::kRest_m_per_s;
+    s.nowhere_m = deformation::kNowhere_m;
     s.decay = static_cast<float>(std::exp(-model_->deformation.damping_per_s * static_cast<double>(host_.substep_s)));
     for (int r = 0; r < 3; ++r)
         s.gravity_step_m_per_s[r] = static_cast<float>(model_->deformation.gravity_m_per_s2[r]) * host_.substep_s;

@@ -273,8 +273,11 @@ KERNEL void motion(struct GpuSweep s, GLOBAL const int* active, int count, GLOBA
         const float impulse = s.substep_s * (s.phyxels.spacing_m * sum[r] + own_force[r * n + i]);
         const float gravity = s.gravity_step_m_per_s[r] * gravity_share;
         const float velocity = s.decay * (v[r * n + i] + inverse_mass * impulse + gravity);
-        v[r * n + i] = is_present ? velocity : impulse;
-        if (is_present) u[r * n + i] += s.substep_s * velocity;
+        const int moving = is_present && !(FABS(velocity) < s.rest_m_per_s);
+        v[r * n + i] = moving ? velocity : is_present ? 0.0f : impulse;
+        if (!is_present) continue;
+        const float moved = u[r * n + i] + (moving ? s.substep_s * velocity : 0.0f);
+        u[r * n + i] = FABS(moved) < s.nowhere_m ? 0.0f : moved;
     }
 }
 

@@ -59,6 +59,7 @@ struct GpuSweep {
     float most_squared_stretch;
     float substep_s;
     float decay;
+    float rest_m_per_s, nowhere_m;  ///< less is none
     float gravity_step_m_per_s[3];
     int ascending[27];  ///< cells of the neighbourhood in the order of their places in arrays
 };
