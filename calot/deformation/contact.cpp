@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "calot/deformation/contact_kernel.h"
 #include "calot/deformation/contact_spread.h"
@@ -18,6 +17,8 @@ namespace {
 
 /// Most phyxels that carry a point: the 5^3 about its own.
 constexpr std::size_t kMostCarriers = 125;
+/// With those that ghosts among them mirror: the 7^3.
+constexpr std::size_t kMostMirrored = 343;
 /// Spacing of hexels to which ContactParameters::stiffness_N_per_m belongs; it grows with the area that a hexel has.
 constexpr double kStandardHexel_m = 0.6e-3;
 /// Impulses of a tick before are taken over where normals agree within 60 degrees.
@@ -133,6 +134,7 @@ std::int32_t row_of(ContactWork& contact, std::int64_t phyxel) {
     if (row < 0) {
         row = static_cast<std::int32_t>(contact.phyxel.size());
         contact.phyxel.push_back(static_cast<std::int32_t>(phyxel));
+        contact.entry_of[static_cast<std::size_t>(row)] = -1;
     }
     return row;
 }
@@ -154,8 +156,16 @@ void fill_lines(const Model& model, Work& work) {
     const std::size_t count = contact.points.size();
     contact.shares.clear();
     for (std::size_t c = 0; c < count; ++c) {
+        const auto begin = static_cast<std::int32_t>(contact.shares.size());
         for_each_carrier(model, work, contact.local[c], [&](std::int64_t phyxel, float share) {
-            contact.shares.push_back({row_of(contact, phyxel), share});
+            const std::int32_t row = row_of(contact, phyxel);
+            std::int32_t& entry = contact.entry_of[static_cast<std::size_t>(row)];
+            if (entry < begin) {
+                entry = static_cast<std::int32_t>(contact.shares.size());
+                contact.shares.push_back({row, share});
+            } else {
+                contact.shares[static_cast<std::size_t>(entry)].share += share;
+            }
         });
         contact.points[c].shares_end = static_cast<std::int32_t>(contact.shares.size());
     }
@@ -168,7 +178,7 @@ void fill_lines(const Model& model, Work& work) {
         float* line = contact.psi.data() + c * stride;
         std::int32_t first = contact.stride, end = 0;
         for (; share != contact.shares.cbegin() + point.shares_end; ++share) {
-            line[share->row] += share->share;
+            line[share->row] = share->share;
             first = std::min(first, share->row);
             end = std::max(end, share->row + 1);
         }
@@ -194,7 +204,8 @@ ContactWork make_contact_work(const Model& model) {
     contact.points.reserve(kMaxPoints);
     contact.local.resize(kMaxPoints);
     contact.phyxel.reserve(rows);
-    contact.shares.reserve(kMaxPoints * kMostCarriers * std::tuple_size_v<decltype(Mirror::phyxel)>);
+    contact.shares.reserve(kMaxPoints * kMostMirrored);
+    contact.entry_of.assign(rows, -1);
     contact.psi.assign(rows * kMaxPoints, 0.0f);
     contact.inverse_mass_per_kg.assign(rows, 0.0f);
     for (auto& velocity : contact.row_velocity_m_per_s) velocity.assign(rows, 0.0f);

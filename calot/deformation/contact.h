@@ -89,6 +89,7 @@ struct ContactWork {
     bool started = false;                                 ///< a substep of this tick was solved
     std::vector<LocalShares> local;                       ///< [kMaxPoints]
     std::vector<RowShare> shares;                         ///< of all points in turn, on the way to psi
+    Array<std::int32_t> entry_of;                         ///< [rows] the last of them
     std::array<Vec3, tissue::kInstruments> impulse_Ns{};  ///< of each instrument on the tissue since the tick began
     std::vector<std::int32_t> owner, next, rank, kept;    ///< scratch of choosing among many, [contacts]
 };

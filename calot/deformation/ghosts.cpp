@@ -1,7 +1,6 @@
 #include "calot/deformation/ghosts.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "calot/base/parallel.h"
@@ -27,9 +26,6 @@ void list_ghosts(const tissue::Model& model, Work& work) {
     for (const Mirror& mirror : work.mirrors) images.ghost.push_back(mirror.ghost);
     images.start.assign(work.mirrors.size() + 1, 0);
     images.slot.assign(static_cast<std::size_t>(model.phyxels.cells), -1);
-    const std::size_t most = work.mirrors.size() * std::tuple_size_v<decltype(Mirror::phyxel)>;
-    for (auto* list : {&images.mirrored, &images.phyxel, &images.first, &images.by}) list->reserve(most + 1);
-    images.share.reserve(most);
     for (auto& face : work.face_m) face.assign(work.mirrors.size(), 0.0f);
 }
 
@@ -49,6 +45,22 @@ void refresh_mirror(const tissue::Model& model, const tissue::State& state, Work
                 mirror.phyxel[static_cast<std::size_t>(mirror.count++)] = static_cast<std::int32_t>(other);
         });
     }
+}
+
+void reserve_images(const tissue::Model& model, const tissue::State& state, Work& work) {
+    // Links only ever go: a ghost has at most as many images as it has faces now, or edges when it has lost these.
+    std::size_t most = 0;
+    for (const Mirror& mirror : work.mirrors) {
+        std::size_t faces = 0, edges = 0;
+        for_each_link(model.phyxels, state.links, mirror.ghost, [&](std::int64_t other, const Int3&, double weight) {
+            if (state.phyxel_present.test(other)) ++(weight == kFaceWeight ? faces : edges);
+        });
+        most += std::max(faces, edges);
+    }
+    Images& images = work.images;
+    for (auto* list : {&images.mirrored, &images.phyxel, &images.first, &images.by}) list->reserve(most + 1);
+    images.share.reserve(most);
+    refresh_images(work);
 }
 
 void refresh_images(Work& work) {

@@ -21,6 +21,9 @@ const Mirror& find_mirror(const Work& work, std::int64_t ghost);
 /// Finds out anew which phyxels a ghost mirrors. Its links must be current.
 void refresh_mirror(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t ghost);
 
+/// Makes Work::images, with room for all that can come. Mirrors must be current.
+void reserve_images(const tissue::Model& model, const tissue::State& state, Work& work);
+
 /// Work::images from Work::mirrors, if any of these changed.
 void refresh_images(Work& work);
 

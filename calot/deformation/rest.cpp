@@ -303,6 +303,7 @@ void refresh_all_phyxels(const Model& model, const State& state, Work& work) {
         if (state.phyxel_present.test(p) || model.phyxel_ghost.test(p)) store_rest(model, state, work, p);
     for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p)
         if (state.phyxel_present.test(p)) store_mass(model, state, work, p);
+    reserve_images(model, state, work);
 }
 
 double added_mass_kg(const Work& work) {

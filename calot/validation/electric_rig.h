@@ -73,6 +73,7 @@ inline Rig disc_rig(int window, double radius, double conductivity_S_per_m, doub
 /// A block of fat, 24 x 24 x 9.6 mm, held below by a slab of liver; metal lies on 2 x 8 hexels of its top.
 inline Rig held_rig(double residual, const Kernels& kernels = wide_kernels()) {
     tissue::Model model = tissue::sample(anatomy::make_block({.size_m = Vec3(0.024, 0.024, 0.0096)}), {});
+    model.electric.window_cells = 48;  // all of it
     model.electric.relative_residual = residual;
     Rig rig(std::move(model), kernels);
     for (int y = 20; y < 28; ++y)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -125,6 +126,23 @@ TEST(Stability, TissueThatComesToRestLeavesNoSubnormalNumbers) {
     }
     EXPECT_GT(moved, 0.0);
     EXPECT_LT(kinetic_energy_J(body.model, body.state, body.work), 1e-20 * moved);
+}
+
+TEST(Stability, WhatIsNoNumberStopsTheRun) {
+    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+    for (const float poison : {kNaN, kInfinity})
+        for (const bool velocity : {false, true}) {
+            Body body(block({6, 5, 4}, true));
+            shake(body, 0.02, 0.0, 7);
+            body.tick();
+            ASSERT_TRUE(body.state.status.ok);
+            const auto p = static_cast<std::size_t>(body.model.phyxels.index(Int3(4, 3, 3)));
+            ASSERT_TRUE(body.state.phyxel_present.test(static_cast<std::int64_t>(p)));
+            (velocity ? body.state.velocity_m_per_s : body.state.displacement_m)[1][p] = poison;
+            body.tick();
+            EXPECT_FALSE(body.state.status.ok) << poison << (velocity ? " as velocity" : " as displacement");
+            EXPECT_STREQ(body.state.status.field, "displacement_m");
+        }
 }
 
 }  // namespace calot::deformation::rig

@@ -309,6 +309,7 @@ constexpr Reach kTouch{0.05e-3, false};
 
 TEST(Window, StaysUntilTheTipLeavesItsMiddle) {
     tissue::Model model = full_box({96, 96, 64}, 0.1);
+    model.electric.window_cells = 48;
     tissue::Exchange exchange;
     auto place = [&](const Int3& hexel, const Int3& low) {
         exchange.near.assign(1, {});
