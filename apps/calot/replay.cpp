@@ -83,8 +83,8 @@ int replay(const ReplayOptions& options) {
         note_older_checkpoints(options.recording);
         plan.before = &recording;
         plan.reach = [&] {
-            moment = training::reach(options.recording, std::llround(options.from_s / plan.setup->model.tick_s), nullptr,
-                                     plan.setup);
+            moment = training::reach(options.recording, std::llround(options.from_s / plan.setup->model.tick_s),
+                                     nullptr, plan.setup);
             return std::move(moment.run);
         };
     }

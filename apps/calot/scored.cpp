@@ -38,10 +38,11 @@ void score_against(const training::Task& task, RunPlan& plan, bool to_the_end) {
 void note_older_checkpoints(const std::string& recording) {
     const std::filesystem::path file = std::filesystem::path(recording).parent_path() / "checkpoints.calot";
     if (training::CheckpointReader(file.string()).older())
-        fmt::print(stderr,
-                   "calot: note: {} is of an older version of Calot and is not read: the run is repeated from its start, "
-                   "which takes longer\n",
-                   file.string());
+        fmt::print(
+            stderr,
+            "calot: note: {} is of an older version of Calot and is not read: the run is repeated from its start, "
+            "which takes longer\n",
+            file.string());
 }
 
 void print_score(const training::Result& result) {

@@ -45,8 +45,8 @@ void print_study(const training::Study& study) {
     fmt::print("\n{:<26}  {:>3}  {:>5}  {:>5}\n", "question", "n", "mean", "SD");
     for (std::size_t k = 0; k < training::kQuestions; ++k)
         if (const training::Spread& spread = study.answers[k]; spread.count > 0)
-            fmt::print("{:<26}  {:>3}  {:>5.2f}  {:>5.2f}\n", training::questions()[k].aspect, spread.count, spread.mean,
-                       spread.deviation);
+            fmt::print("{:<26}  {:>3}  {:>5.2f}  {:>5.2f}\n", training::questions()[k].aspect, spread.count,
+                       spread.mean, spread.deviation);
         else
             fmt::print("{:<26}  {:>3}  {:>5}  {:>5}\n", training::questions()[k].aspect, 0, "-", "-");
 }
@@ -158,7 +158,9 @@ std::string study_html(const training::Study& study, const std::vector<training:
         "content=\"width=device-width,initial-scale=1\">\n<title>Study · Calot</title>\n<style>";
     out += kReportStyle;
     out +=
-        ".plots svg{max-width:640px}.soft{color:var(--soft);font-size:15px}.wide,.answers{max-width:none}.likert{width:26%;min-width:140px}"
+        ".plots "
+        "svg{max-width:640px}.soft{color:var(--soft);font-size:15px}.wide,.answers{max-width:none}.likert{width:26%;"
+        "min-width:140px}"
         ".likert div{position:relative;height:12px;border-radius:6px;background:var(--line)}"
         ".likert i{position:absolute;top:0;height:12px;border-radius:6px;background:color-mix(in srgb,var(--blue) "
         "35%,transparent)}"

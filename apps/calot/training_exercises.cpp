@@ -126,9 +126,9 @@ std::vector<viewer::HudLine> TrainingAttempt::hud() {
             const double value = figures.goals[k];
             const bool met = goals[k].met({{goals[k].metric, value}});
             const double goal = goals[k].at_least ? *goals[k].at_least : *goals[k].at_most;
-            lines.push_back({metric.title,
-                             fmt::format("{} / {}", training::shown(metric, value), training::shown(metric, goal)),
-                             met ? Mood::good : Mood::plain, "", goals[k].at_least && goal > 0.0 ? value / goal : -1.0});
+            lines.push_back(
+                {metric.title, fmt::format("{} / {}", training::shown(metric, value), training::shown(metric, goal)),
+                 met ? Mood::good : Mood::plain, "", goals[k].at_least && goal > 0.0 ? value / goal : -1.0});
         }
         const int broken = figures.limits_broken;
         if (broken > 0) lines.push_back({"hud.limits_broken", fmt::format("{}", broken), Mood::bad});
@@ -146,9 +146,8 @@ viewer::Past past_of(const std::shared_ptr<training::Store>& store, const traini
     past.resume = [store, start, session](std::int64_t tick, std::shared_ptr<const simulation::Setup> setup) {
         training::Moment moment = training::reach(*store, session, tick, std::move(setup));
         std::unique_ptr<simulation::Simulation> run = std::move(moment.run);
-        return std::pair(std::move(run),
-                         std::shared_ptr<viewer::Attempt>(
-                             std::make_shared<TrainingAttempt>(store, start, std::move(moment))));
+        return std::pair(std::move(run), std::shared_ptr<viewer::Attempt>(
+                                             std::make_shared<TrainingAttempt>(store, start, std::move(moment))));
     };
     return past;
 }
@@ -177,7 +176,7 @@ viewer::Debrief TrainingAttempt::debrief() {
         debrief.outcome = {score.completed ? "debrief.completed" : "debrief.not_completed",
                            fmt::format("{:.0f} / 100", score.points),
                            !score.broken.empty() ? Mood::bad
-                           : score.completed    ? Mood::good
+                           : score.completed     ? Mood::good
                                                  : Mood::plain};
         for (const training::BrokenLimit& limit : score.broken)
             debrief.lines.push_back({limit.message, fmt::format("\u2264 {:.0f} / 100", limit.cap), Mood::bad});

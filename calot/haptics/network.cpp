@@ -55,7 +55,7 @@ std::string NetworkDevice::open() {
     socklen_t size = sizeof(own);
     ::getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size);
     port_ = ntohs(own.sin_port);
-    info_.model = fmt::format("listening on {}:{} (UDP)", options_.address, port_);
+    info_.model = fmt::format("UDP {}:{}", options_.address, port_);
     salt_ = std::random_device{}();
     return "";
 }

@@ -53,14 +53,8 @@ Four greater(Four a, Four b) {
 }
 
 /// Of three cells in a row, by their presence bits: 1 where there is a hexel; the bytes of their materials that count.
-constexpr std::array<std::array<float, 4>, 8> kThere{{{0, 0, 0, 0},
-                                                      {1, 0, 0, 0},
-                                                      {0, 1, 0, 0},
-                                                      {1, 1, 0, 0},
-                                                      {0, 0, 1, 0},
-                                                      {1, 0, 1, 0},
-                                                      {0, 1, 1, 0},
-                                                      {1, 1, 1, 0}}};
+constexpr std::array<std::array<float, 4>, 8> kThere{
+    {{0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, 0}, {1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 0}}};
 constexpr std::array<std::uint32_t, 8> kBytes{0x000000, 0x0000ff, 0x00ff00, 0x00ffff,
                                               0xff0000, 0xff00ff, 0xffff00, 0xffffff};
 
@@ -75,7 +69,8 @@ class Attributes {
           film_m_(film_m),
           inverse_spacing_(static_cast<float>(1.0 / model.hexels.spacing_m)) {
         std::array<int, 3> axes{0, 1, 2};
-        std::sort(axes.begin(), axes.end(), [&](int a, int b) { return model.hexels.stride[a] < model.hexels.stride[b]; });
+        std::sort(axes.begin(), axes.end(),
+                  [&](int a, int b) { return model.hexels.stride[a] < model.hexels.stride[b]; });
         fast_ = axes[0];
         middle_ = axes[1];
         slow_ = axes[2];
@@ -243,10 +238,11 @@ void fill_tissue(const tissue::Model& model, const tissue::State& state, std::sp
     assert(surface.rest_normal.size() == count && surface.owner.size() == count && surface.world_m.size() == count);
     assert(surface.deformation_gradient.empty() || surface.deformation_gradient.size() == count);
     vertices.resize(count);
-    parallel_for("render.fill_tissue", 0, static_cast<std::int64_t>(count), 4096, [&](std::int64_t low, std::int64_t high) {
-        fill_tissue(model, state, temperature_K, surface, static_cast<std::size_t>(low), static_cast<std::size_t>(high),
-                    vertices);
-    });
+    parallel_for("render.fill_tissue", 0, static_cast<std::int64_t>(count), 4096,
+                 [&](std::int64_t low, std::int64_t high) {
+                     fill_tissue(model, state, temperature_K, surface, static_cast<std::size_t>(low),
+                                 static_cast<std::size_t>(high), vertices);
+                 });
 }
 
 void fill_tissue(const tissue::Model& model, const tissue::State& state, std::span<const float> temperature_K,

@@ -89,7 +89,8 @@ void main() {
 }
 )";
 
-// The camera: barrel distortion, smoke over the scene, bloom, depth of field, filmic curve, vignette. Alpha = luma for the finish.
+// The camera: barrel distortion, smoke over the scene, bloom, depth of field, filmic curve, vignette. Alpha = luma for
+// the finish.
 const char* const kComposeFragment = R"(
 in vec2 v_uv;
 uniform sampler2D u_scene;

@@ -102,7 +102,8 @@ const std::vector<Metric>& metric_table() {
          "every 4th tick)",
          kFuse},
         {"hot_touch_s", "Hot tip on duct or artery", "s", 1, 0, B::less,
-         "ticks in contact with duct or artery with the pedal up and the wire at 60 C or more: it stays hot for seconds",
+         "ticks in contact with duct or artery with the pedal up and the wire at 60 C or more: it stays hot for "
+         "seconds",
          "Govekar et al. 2011, Surg Endosc 25:3499 (residual heat of laparoscopic energy devices)"},
         {"bleeding_s", "Bleeding", "s", 1, 0, B::less,
          "time since the first cubic millimetre of the artery burnt away: a hole through its wall", ""},

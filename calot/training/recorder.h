@@ -2,8 +2,8 @@
 // Writes a session to its folder while it runs, from a thread of its own: recording.calot and checkpoints.calot.
 //
 // The physics thread only puts an input into a ring and, once a second, copies the state into a slot, spread over some
-// ticks (state_copy.h); it takes no lock and waits for nothing, unless the disk has been stuck for half a minute. Inputs
-// are with the system after 0.2 s at most, so that a killed program loses less than a second.
+// ticks (state_copy.h); it takes no lock and waits for nothing, unless the disk has been stuck for half a minute.
+// Inputs are with the system after 0.2 s at most, so that a killed program loses less than a second.
 
 #include <array>
 #include <atomic>
@@ -39,8 +39,7 @@ class Recorder {
     ~Recorder();
 
     /// Once a tick, after Simulation::tick(input). `aside` is asked for what goes along when a checkpoint is due.
-    void after_tick(const simulation::Simulation& run, const tissue::Input& input,
-                    const std::function<Aside()>& aside);
+    void after_tick(const simulation::Simulation& run, const tissue::Input& input, const std::function<Aside()>& aside);
     /// Writes what is left and ends the recording. Throws what went wrong with the files.
     void finish(const tissue::State& state);
     /// For people: what went wrong with the files, "" while all is well.

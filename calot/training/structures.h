@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "calot/base/archive.h"
 #include "calot/base/array.h"
 #include "calot/simulation/simulation.h"
-#include "calot/base/archive.h"
 
 namespace calot::training {
 

@@ -19,7 +19,7 @@ struct HudLine {
     std::string value;
     enum class Mood { plain, good, bad } mood = Mood::plain;
     std::string detail{};  ///< beside the value
-    double share = -1.0;  ///< of the way to a goal, 0 to 1; below 0: there is none
+    double share = -1.0;   ///< of the way to a goal, 0 to 1; below 0: there is none
 };
 
 /// Something worth coming back to.

@@ -21,8 +21,7 @@ Loader::Loader(std::function<scene::Scene()> make_scene,
           return start;
       }) {}
 
-Loader::Loader(std::function<Start()> make_start)
-    : thread_([this, make = std::move(make_start)] { work(make); }) {}
+Loader::Loader(std::function<Start()> make_start) : thread_([this, make = std::move(make_start)] { work(make); }) {}
 
 Loader::~Loader() {
     if (thread_.joinable()) thread_.join();

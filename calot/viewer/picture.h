@@ -16,8 +16,8 @@ class Picture {
     /// The simulation at this moment. `view` may be an older one: its memory is used again.
     void fill(const simulation::Simulation& run, const tissue::Input& input, render::View& view);
 
-    // The same a few vertices at a time, for whoever has ticks to make in between: where everything is, as it was at the
-    // beginning, what tissue looks like, as it is when its turn comes.
+    // The same a few vertices at a time, for whoever has ticks to make in between: where everything is, as it was at
+    // the beginning, what tissue looks like, as it is when its turn comes.
     void begin(const simulation::Simulation& run, const tissue::Input& input, render::View& view);
     /// The next `count` vertices. True when all are there.
     bool go_on(const simulation::Simulation& run, std::size_t count, render::View& view);

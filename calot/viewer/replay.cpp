@@ -69,9 +69,7 @@ class Tape {
     const tissue::Input& last_input() const {
         return recording_.inputs[static_cast<std::size_t>(std::max<std::int64_t>(0, tick() - 1))];
     }
-    bool advance() {
-        return tick() < ticks() && run_->tick(recording_.inputs[static_cast<std::size_t>(tick())]);
-    }
+    bool advance() { return tick() < ticks() && run_->tick(recording_.inputs[static_cast<std::size_t>(tick())]); }
     void take(std::int64_t checkpoint) {
         tissue::State state = initial_;
         training::Aside aside;
@@ -111,7 +109,8 @@ void Replay::work(const std::string& recording) {
     try {
         simulation::Recording read = simulation::read_recording(recording);
         if (read.inputs.empty())
-            throw InputError(recording, 0, 0, "the recording holds no inputs", "it was cut off within its first second");
+            throw InputError(recording, 0, 0, "the recording holds no inputs",
+                             "it was cut off within its first second");
         if (!setup_)
             setup_ = std::make_shared<const simulation::Setup>(
                 scene::build(scene::parse(read.scene_text, recording + " (its scene)", ".")));

@@ -148,8 +148,8 @@ void Session::work() {
         const double begun_s = now_s;
         now_s = steady_s();
         book(begun_s, now_s);
-        // A picture is made when the last one has been taken, so that a slow window costs the physics nothing; and a few
-        // vertices after each tick, so that no tick waits for a whole one.
+        // A picture is made when the last one has been taken, so that a slow window costs the physics nothing; and a
+        // few vertices after each tick, so that no tick waits for a whole one.
         if (filling) {
             filling = !core_.go_on(snapshots_.back(), kVerticesATick);
             if (!filling) {

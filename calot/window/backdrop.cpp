@@ -43,9 +43,9 @@ void Backdrop::draw() const {
     // Cut off what would be too wide or too high.
     const float u = window < picture ? 0.5f * (1.0f - window / picture) : 0.0f;
     const float v = window > picture ? 0.5f * (1.0f - picture / window) : 0.0f;
-    ImGui::GetBackgroundDrawList()->AddImage(
-        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), ImVec2(0.0f, 0.0f), screen, ImVec2(u, v),
-        ImVec2(1.0f - u, 1.0f - v), kDim);
+    ImGui::GetBackgroundDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)),
+                                             ImVec2(0.0f, 0.0f), screen, ImVec2(u, v), ImVec2(1.0f - u, 1.0f - v),
+                                             kDim);
 }
 
 }  // namespace calot::window

@@ -119,13 +119,13 @@ void GlfwWindow::on_key(int key, int action) {
     if (action == GLFW_RELEASE || (typing_ && key < GLFW_KEY_ESCAPE)) return;
     if (action == GLFW_REPEAT && key != GLFW_KEY_LEFT && key != GLFW_KEY_RIGHT) return;
     static constexpr std::pair<int, Command> kCommands[] = {
-        {GLFW_KEY_ESCAPE, Command::pause},   {GLFW_KEY_P, Command::pause},   {GLFW_KEY_F1, Command::help},
-        {GLFW_KEY_H, Command::help},         {GLFW_KEY_F2, Command::pace},   {GLFW_KEY_F5, Command::reset},
-        {GLFW_KEY_F11, Command::fullscreen}, {GLFW_KEY_M, Command::mute},    {GLFW_KEY_F12, Command::picture},
-        {GLFW_KEY_R, Command::grasp},        {GLFW_KEY_X, Command::wipe},    {GLFW_KEY_1, Command::preset1},
-        {GLFW_KEY_2, Command::preset2},      {GLFW_KEY_3, Command::preset3}, {GLFW_KEY_4, Command::preset4},
+        {GLFW_KEY_ESCAPE, Command::pause},   {GLFW_KEY_P, Command::pause},      {GLFW_KEY_F1, Command::help},
+        {GLFW_KEY_H, Command::help},         {GLFW_KEY_F2, Command::pace},      {GLFW_KEY_F5, Command::reset},
+        {GLFW_KEY_F11, Command::fullscreen}, {GLFW_KEY_M, Command::mute},       {GLFW_KEY_F12, Command::picture},
+        {GLFW_KEY_R, Command::grasp},        {GLFW_KEY_X, Command::wipe},       {GLFW_KEY_1, Command::preset1},
+        {GLFW_KEY_2, Command::preset2},      {GLFW_KEY_3, Command::preset3},    {GLFW_KEY_4, Command::preset4},
         {GLFW_KEY_SPACE, Command::play},     {GLFW_KEY_LEFT, Command::earlier}, {GLFW_KEY_RIGHT, Command::later},
-        {GLFW_KEY_HOME, Command::first},     {GLFW_KEY_END, Command::last},  {GLFW_KEY_ENTER, Command::enter},
+        {GLFW_KEY_HOME, Command::first},     {GLFW_KEY_END, Command::last},     {GLFW_KEY_ENTER, Command::enter},
     };
     for (const auto& [wanted, which] : kCommands)
         if (key == wanted) command(which);

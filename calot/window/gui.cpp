@@ -95,8 +95,8 @@ void Gui::begin_frame(bool mouse, bool keys) {
     // While the mouse is the hand, panels must not answer to it, nor keys move a focus about.
     const ImGuiConfigFlags hands_off = ImGuiConfigFlags_NoMouse;
     const ImGuiConfigFlags navigation = ImGuiConfigFlags_NavEnableKeyboard | ImGuiConfigFlags_NavEnableGamepad;
-    io.ConfigFlags = (io.ConfigFlags & ~(hands_off | navigation)) | (mouse ? 0 : hands_off) |
-                     (mouse && keys ? navigation : 0);
+    io.ConfigFlags =
+        (io.ConfigFlags & ~(hands_off | navigation)) | (mouse ? 0 : hands_off) | (mouse && keys ? navigation : 0);
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();

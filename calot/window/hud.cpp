@@ -86,7 +86,7 @@ void draw_exercise(const Gui& gui, const Language& text, const HudContent& conte
         wrapped(text(content.exercise), colour::kAccent);
         name_and_value(text("hud.time"), clock_text(content.snapshot.time_s));
         name_and_value(text("hud.force"), fmt::format("{:.2f} N", glm::length(content.snapshot.hook_force_N)),
-             glm::length(content.snapshot.hook_force_N) > 3.0 ? colour::kBad : colour::kText);
+                       glm::length(content.snapshot.hook_force_N) > 3.0 ? colour::kBad : colour::kText);
         for (const HudLine& each : content.lines) {
             const bool goal = each.share >= 0.0;
             if (goal) ImGui::PushFont(gui.fonts().small);

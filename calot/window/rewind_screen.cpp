@@ -42,7 +42,8 @@ void draw_timeline(const Gui& gui, const Language& text, const RewindContent& co
     }
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float top = at.y + 22.0f * u, bottom = at.y + 46.0f * u;
-    list->AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + width, bottom), ImGui::GetColorU32(ImGuiCol_FrameBg), 5.0f * u);
+    list->AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + width, bottom), ImGui::GetColorU32(ImGuiCol_FrameBg),
+                        5.0f * u);
     const float shown = x_of(content.shown_s);
     list->AddRectFilled(ImVec2(at.x, top), ImVec2(shown, bottom), IM_COL32(255, 255, 255, 26), 5.0f * u);
     for (const viewer::PedalSpan& span : content.pedal) {
@@ -162,7 +163,10 @@ RewindChoice draw_rewind(const Gui& gui, const Language& text, const RewindConte
         const bool there = std::fabs(content.shown_s - state.at_s) < 0.25 || state.playing;
         ImGui::PushFont(gui.fonts().small);
         ImGui::TextColored(colour::kFaint, "%s",
-                           text(content.older ? "rewind.older" : there ? "rewind.hint" : "rewind.seeking").c_str());
+                           text(content.older ? "rewind.older"
+                                : there       ? "rewind.hint"
+                                              : "rewind.seeking")
+                               .c_str());
         ImGui::PopFont();
     }
     ImGui::End();

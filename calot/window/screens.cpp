@@ -12,8 +12,7 @@ namespace calot::window {
 
 using viewer::Language;
 
-void draw_loading(const Gui& gui, const Language& text, const char* title, viewer::Loader::Step step,
-                  double waited_s) {
+void draw_loading(const Gui& gui, const Language& text, const char* title, viewer::Loader::Step step, double waited_s) {
     const float u = gui.unit();
     if (begin_panel("loading", middle_of_screen(), ImVec2(0.5f, 0.5f), ImVec2(520.0f * u, 0.0f), 0.9f)) {
         heading(gui, text(title));
@@ -63,9 +62,8 @@ bool choose_preset(const Gui& gui, const Language& text, Settings& settings) {
     ImGui::TextColored(colour::kFaint, "%s", text("settings.presets").c_str());
     float at = 250.0f * gui.unit();
     const float gap = 4.0f * gui.unit();
-    const float width = (ImGui::GetContentRegionMax().x - at + gap) /
-                            static_cast<float>(tissue::kGeneratorPresets.size()) -
-                        gap;
+    const float width =
+        (ImGui::GetContentRegionMax().x - at + gap) / static_cast<float>(tissue::kGeneratorPresets.size()) - gap;
     ImGui::PushFont(gui.fonts().small);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f, ImGui::GetStyle().FramePadding.y));
     for (const tissue::GeneratorPreset& preset : tissue::kGeneratorPresets) {
@@ -197,8 +195,7 @@ void draw_part(const Gui& gui, const Language& text, const viewer::HudLine& part
 
 }  // namespace
 
-DebriefChoice draw_debrief(const Gui& gui, const Language& text, const viewer::Debrief& debrief,
-                           bool report_ready) {
+DebriefChoice draw_debrief(const Gui& gui, const Language& text, const viewer::Debrief& debrief, bool report_ready) {
     DebriefChoice choice = DebriefChoice::none;
     const float u = gui.unit(), row = 52.0f * u, spacing = ImGui::GetStyle().ItemSpacing.y;
     const bool rewind = !debrief.past.recording.empty();

@@ -19,7 +19,7 @@ namespace {
 constexpr double kIdleFrame_s = 1.0 / 30.0;  ///< the window is drawn at least so often
 constexpr double kTurn_s = 2e-3;             ///< the devices are read at least so often
 constexpr int kMostUnseen = 3;
-constexpr double kReady_s = 3.0;             ///< to find the hands again after a rewind
+constexpr double kReady_s = 3.0;  ///< to find the hands again after a rewind
 
 }  // namespace
 
@@ -106,7 +106,8 @@ void Trainer::draw_window() {
     int width = 0, height = 0;
     window_.size(width, height);
     if (width == 0 || height == 0) return;
-    // A panel finds its size in its first frame and is seen in its second: a new screen is drawn twice, lest it be empty.
+    // A panel finds its size in its first frame and is seen in its second: a new screen is drawn twice, lest it be
+    // empty.
     for (int unseen = 0;; ++unseen) {
         const Seen drawn{screen_, help_, settings_open_};
         gui_.begin_frame(!window_.captured(), screen_ != Screen::rewind);
@@ -286,7 +287,8 @@ void Trainer::draw_picture(int width, int height) {
     ImGui::GetBackgroundDrawList()->AddImage(
         reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), ImVec2(0.0f, 0.0f),
         ImVec2(static_cast<float>(width),
-               static_cast<float>(screen_ == Screen::rewind ? picture_height(height) : height)), ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
+               static_cast<float>(screen_ == Screen::rewind ? picture_height(height) : height)),
+        ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
 }
 
 void Trainer::take_picture(int width, int height) {

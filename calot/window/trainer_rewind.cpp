@@ -54,19 +54,20 @@ void Trainer::rewind(double dt_s) {
         rewind_ = {std::max(0.0, duration_s - rewind_from_end_s_), false};
         lens_ = {};
         pictures_.show(&replay_->snapshots());
-        for (const Command key : {Command::play, Command::earlier, Command::later, Command::first, Command::last,
-                                  Command::enter})
+        for (const Command key :
+             {Command::play, Command::earlier, Command::later, Command::first, Command::last, Command::enter})
             window_.take(key);  // from before
     }
     if (rewind_.playing)  // no further ahead of the picture than the eye forgives
-        rewind_.at_s = std::min({rewind_.at_s + dt_s, static_cast<double>(replay_->shown()) * tick_s + kAhead_s,
-                                 duration_s});
+        rewind_.at_s =
+            std::min({rewind_.at_s + dt_s, static_cast<double>(replay_->shown()) * tick_s + kAhead_s, duration_s});
     replay_->wish(std::llround(rewind_.at_s / tick_s));
 }
 
 /// Goes on from the moment on the timeline, as a new session.
 void Trainer::take_over() {
-    const std::int64_t tick = std::clamp<std::int64_t>(std::llround(rewind_.at_s / setup_->model.tick_s), 0, replay_->ticks());
+    const std::int64_t tick =
+        std::clamp<std::int64_t>(std::llround(rewind_.at_s / setup_->model.tick_s), 0, replay_->ticks());
     close_rewind();
     resumed_ = true;
     loader_ = std::make_unique<viewer::Loader>([this, resume = past_.resume, tick, setup = setup_] {

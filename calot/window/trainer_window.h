@@ -109,8 +109,8 @@ class Trainer {
     RewindState rewind_;
     Screen rewind_back_ = Screen::debrief;
     double rewind_from_end_s_ = 0.0;
-    bool resumed_ = false;        ///< the session being loaded goes on from a moment
-    double hands_free_s_ = 0.0;   ///< when the hands move again after a rewind
+    bool resumed_ = false;       ///< the session being loaded goes on from a moment
+    double hands_free_s_ = 0.0;  ///< when the hands move again after a rewind
 
     double now_s_ = viewer::steady_s(), last_s_ = now_s_, drawn_s_ = 0.0;
     viewer::RateMeter picture_rate_;

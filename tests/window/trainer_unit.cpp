@@ -293,6 +293,36 @@ TEST_F(Trainer, help_covers_and_goes_away_in_another_language) {
     EXPECT_TRUE(Person::wait([&] { return at_work(person.look()); }));
 }
 
+/// Share of a box with writing that says that all is well (green), or not (red).
+double written(const Shot& shot, bool well, int x0, int y0, int x1, int y1) {
+    int count = 0;
+    for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) {
+            const Colour c = shot.at(x, y);
+            count += well ? c.g > 0.4 && c.g > c.r + 0.12 && c.g > c.b + 0.12 : c.r > 0.5 && c.r > c.g + 0.2;
+        }
+    return static_cast<double>(count) / ((x1 - x0) * (y1 - y0));
+}
+
+TEST_F(Trainer, a_device_tells_its_rate_or_why_it_does_not_push) {
+    {
+        const Folder folder("trainer_device");
+        Person person(folder, {"--start", "free", "--haptics", "simulated"});
+        ASSERT_TRUE(person.window_opened());
+        ASSERT_TRUE(Person::wait([&] { return at_work(person.look()); }));
+        // Below name and rates of physics and pictures: its rate, red where this machine is too slow for it.
+        EXPECT_TRUE(Person::wait([&] {
+            const Shot shot = person.look();
+            return written(shot, true, 220, 228, 305, 252) + written(shot, false, 220, 228, 305, 252) > 0.01;
+        }));
+    }
+    const Folder folder("trainer_no_device");
+    Person person(folder, {"--start", "free", "--haptics", "network"});  // and nobody connects
+    ASSERT_TRUE(person.window_opened());
+    ASSERT_TRUE(Person::wait([&] { return at_work(person.look()); }));
+    EXPECT_TRUE(Person::wait([&] { return written(person.look(), false, 30, 228, 200, 252) > 0.01; }));
+}
+
 }  // namespace
 }  // namespace calot::window::test
 
