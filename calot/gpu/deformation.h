@@ -58,6 +58,7 @@ class Deformation {
     /// What the host keeps: bits and rest properties are current, what moves is not.
     const deformation::Work& host_work() const { return host_; }
     const DeviceArray<float>& moment_stress() const { return moment_stress_; }  ///< M, [9][phyxels.cells]
+    const DeviceArray<float>& rest() const { return rest_; }                    ///< [REST_PLANES][phyxels.cells]
     const DeviceArray<float>& mass() const { return mass_; }                    ///< [MASS_PLANES][phyxels.cells]
     std::uint64_t bytes() const;
 
