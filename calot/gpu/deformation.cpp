@@ -245,8 +245,9 @@ void Deformation::prepare_contacts(const State& state, const Exchange& exchange,
     psi_.upload(*device_, {contact.psi.data(), points_.size() * static_cast<std::size_t>(contact.stride)});
     device_->launch(couple_points_, std::int64_t{contact_.points} * deformation::kMaxPoints * kContactLanes,
                     kContactGroup, contact_, device_points_, rows_, psi_, mass_, coupling_);
-    device_->launch(place_held_, contact_.points, kGroup, contact_, device_points_, rows_, psi_,
-                    arrays_->displacement_m);
+    if (contact.points.back().held())  // held ones come last
+        device_->launch(place_held_, contact_.points, kGroup, contact_, device_points_, rows_, psi_,
+                        arrays_->displacement_m);
 }
 
 void Deformation::advance(const State& state, const Exchange& exchange) {
