@@ -44,8 +44,7 @@ void deformation_substep(benchmark::State& run) {
     Body body(run);
     const auto view = deformation::KernelView::make(body.model, body.state, body.work);
     for (auto _ : run) {
-        deformation::sweep_velocities(view, body.work.groups);
-        deformation::sweep_displacements(view, body.work.groups);
+        deformation::sweep_motion(view, body.work.groups);
         deformation::sweep_gradients(view, body.work.groups);
     }
     body.report(run);
@@ -61,13 +60,13 @@ void deformation_substep_scalar(benchmark::State& run) {
 }
 BENCHMARK(deformation_substep_scalar)->Apply(sizes);
 
-void deformation_velocities(benchmark::State& run) {
+void deformation_motion(benchmark::State& run) {
     Body body(run);
     const auto view = deformation::KernelView::make(body.model, body.state, body.work);
-    for (auto _ : run) deformation::sweep_velocities(view, body.work.groups);
+    for (auto _ : run) deformation::sweep_motion(view, body.work.groups);
     body.report(run);
 }
-BENCHMARK(deformation_velocities)->Apply(sizes);
+BENCHMARK(deformation_motion)->Apply(sizes);
 
 void deformation_gradients(benchmark::State& run) {
     Body body(run);

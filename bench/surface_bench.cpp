@@ -79,7 +79,8 @@ void surface_update_38(benchmark::State& run) {
         const auto begin = crater.begin() + static_cast<std::ptrdiff_t>(38 * round++);
         exchange.removed_hexels.assign(begin, begin + 38);
         for (std::int64_t h : exchange.removed_hexels) state.hexel_present.clear(h);
-        surface.update_dirty_blocks(scene().model, state, exchange);
+        surface.remove(exchange);
+        surface.redo_dirty_blocks();
     }
 }
 BENCHMARK(surface_update_38)->Unit(benchmark::kMicrosecond);
@@ -102,7 +103,8 @@ void surface_gather(benchmark::State& run, bool smooth) {
         }
         exchange.removed_hexels.assign(1, crater[next++]);
         state.hexel_present.clear(exchange.removed_hexels.front());
-        surface.update_dirty_blocks(scene().model, state, exchange);
+        surface.remove(exchange);
+        surface.redo_dirty_blocks();
         run.ResumeTiming();
         benchmark::DoNotOptimize((smooth ? surface.smooth_mesh() : surface.rest_mesh()).index.data());
     }

@@ -55,3 +55,32 @@ function(calot_embed_kernels name)
         DEPENDS ${kernels} ${CMAKE_SOURCE_DIR}/cmake/embed_kernels.cmake VERBATIM)
     target_sources(calot_${name} PRIVATE ${output})
 endfunction()
+
+# The same sources as CUDA C++: where nvcc is found they are compiled for two generations of devices, with PTX for newer
+# ones, and become bytes in the room's library. Without nvcc the library has no CUDA kernels (docs/gpu.md).
+find_program(CALOT_NVCC nvcc PATHS /usr/local/cuda/bin)
+function(calot_compile_kernels_for_cuda name)
+    set(folder ${CMAKE_SOURCE_DIR}/calot/${name}/kernels)
+    set(output ${CMAKE_BINARY_DIR}/${name}_cuda_modules.cpp)
+    set(modules)
+    if(CALOT_NVCC)
+        file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cl)
+        file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.h)
+        file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/cuda)
+        foreach(source ${sources})
+            get_filename_component(module ${source} NAME_WE)
+            set(module ${CMAKE_BINARY_DIR}/cuda/${module}.fatbin)
+            # Multiplication and addition stay separate, as on the host.
+            add_custom_command(OUTPUT ${module}
+                COMMAND ${CALOT_NVCC} -x cu -fatbin -fmad=false "-gencode=arch=compute_80,code=[sm_80,compute_80]"
+                        -gencode=arch=compute_90,code=sm_90 -o ${module} ${source}
+                DEPENDS ${source} ${headers} VERBATIM)
+            list(APPEND modules ${module})
+        endforeach()
+    endif()
+    string(REPLACE ";" "," listed "${modules}")
+    add_custom_command(OUTPUT ${output}
+        COMMAND ${CMAKE_COMMAND} -DMODULES=${listed} -DOUTPUT=${output} -P ${CMAKE_SOURCE_DIR}/cmake/cuda_modules.cmake
+        DEPENDS ${modules} ${CMAKE_SOURCE_DIR}/cmake/cuda_modules.cmake VERBATIM)
+    target_sources(calot_${name} PRIVATE ${output})
+endfunction()

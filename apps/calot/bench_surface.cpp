@@ -53,7 +53,8 @@ struct SurfaceScene {
         const auto begin = crater.begin() + static_cast<std::ptrdiff_t>(kGone * round++);
         exchange.removed_hexels.assign(begin, begin + static_cast<std::ptrdiff_t>(kGone));
         for (const std::int64_t hexel : exchange.removed_hexels) state.hexel_present.clear(hexel);
-        surface.update_dirty_blocks(model, state, exchange);
+        surface.remove(exchange);
+        surface.redo_dirty_blocks();
     }
     void mend() {
         state.hexel_present = model.hexel_initial;

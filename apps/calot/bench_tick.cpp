@@ -32,7 +32,7 @@ void run_scene(const TickScene& scene, BenchResults& results, const Jobs::Report
     result.threads = scene.threads;
     result.target_p99_us = scene.target_p99_us;
     result.phyxels = run.state().phyxel_present.count();
-    result.hexels = run.state().hexel_present.count();
+    result.hexels = run.figures().hexel_present.count();
     const auto ticks =
         static_cast<std::int64_t>(std::lround(std::min(scene.seconds, setup->duration_s) / setup->model.tick_s));
     TickWatch watch(ticks);
@@ -42,9 +42,9 @@ void run_scene(const TickScene& scene, BenchResults& results, const Jobs::Report
         if (tick % 64 == 0 && !report(static_cast<double>(tick) / static_cast<double>(ticks))) break;
     }
     watch.finish(run, result);
-    if (!run.state().status.ok)
+    if (!run.figures().status.ok)
         results.notes.push_back(fmt::format("{} stopped at tick {}: {} is not finite", scene.scene,
-                                            run.state().status.tick, run.state().status.field));
+                                            run.figures().status.tick, run.figures().status.field));
     results.tick.push_back(std::move(result));
 }
 

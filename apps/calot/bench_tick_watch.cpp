@@ -64,14 +64,14 @@ bool TickWatch::tick(simulation::Simulation& run, const tissue::Input& input) {
     const auto start = Clock::now();
     const bool ok = run.tick(input);
     const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-    const tissue::State& state = run.state();
+    const tissue::State& state = run.figures();
     const std::int64_t removed_now = state.hexels_burnt + state.hexels_fallen;
     const std::int64_t removed = removed_now - removed_before_, severed = state.links_severed - severed_before_;
     removed_before_ = removed_now;
     severed_before_ = state.links_severed;
     tick_s_ = run.model().tick_s;
     us_.push_back(static_cast<float>(us));
-    for (std::size_t k = 0; k < stages_us_.size(); ++k) stages_us_[k].push_back(run.work().stage_us[k]);
+    for (std::size_t k = 0; k < stages_us_.size(); ++k) stages_us_[k].push_back(run.stage_us()[k]);
     pedal_.push_back(input.pedal ? 1 : 0);
     removed_.push_back(static_cast<std::uint16_t>(std::min<std::int64_t>(removed, 65535)));
     if (worst_.size() < kWorst || us > worst_.back().us) note_event(run, input, us, removed, severed);
@@ -81,15 +81,15 @@ bool TickWatch::tick(simulation::Simulation& run, const tissue::Input& input) {
 void TickWatch::note_event(const simulation::Simulation& run, const tissue::Input& input, double us,
                            std::int64_t removed, std::int64_t severed) {
     TickEvent event;
-    event.tick = run.state().tick - 1;
+    event.tick = run.figures().tick - 1;
     event.us = us;
-    event.stages_us = run.work().stage_us;
+    event.stages_us = run.stage_us();
     event.pedal = input.pedal;
     event.removed = removed;
     event.severed = severed;
-    event.contacts = static_cast<std::int64_t>(run.work().exchange.contacts.size());
-    event.near = static_cast<std::int64_t>(run.work().exchange.near.size());
-    event.gas = static_cast<std::int64_t>(run.work().exchange.gas.size());
+    event.contacts = static_cast<std::int64_t>(run.exchange().contacts.size());
+    event.near = static_cast<std::int64_t>(run.exchange().near.size());
+    event.gas = static_cast<std::int64_t>(run.exchange().gas.size());
     const auto place = std::upper_bound(worst_.begin(), worst_.end(), us,
                                         [](double value, const TickEvent& e) { return value > e.us; });
     worst_.insert(place, std::move(event));
@@ -104,8 +104,8 @@ void TickWatch::finish(const simulation::Simulation& run, TickResult& result) co
     result.p99_us = quantile(us, 0.99);
     result.p999_us = quantile(us, 0.999);
     result.max_us = quantile(us, 1.0);
-    result.removed = run.state().hexels_burnt + run.state().hexels_fallen;
-    result.severed = run.state().links_severed;
+    result.removed = run.figures().hexels_burnt + run.figures().hexels_fallen;
+    result.severed = run.figures().links_severed;
     std::vector<double> burning;
     double sum = 0.0;
     for (std::size_t k = 0; k < ticks; ++k) {

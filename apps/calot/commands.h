@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calot/gpu/choose.h"
 #include "calot/scene/scene.h"
 
 namespace calot::app {
@@ -32,6 +33,10 @@ scene::Scene load_scene(const SceneChoice& choice);
 /// scene::build; tells on the standard error what was mended in meshes, and draws where a refused one is at fault.
 simulation::Setup build_setup(const scene::Scene& scene);
 
+/// Simulations of this setup run where it is wished; says so on the standard error unless nothing was wished. Throws
+/// InputError.
+void use_backend(const gpu::BackendWish& wish, simulation::Setup& setup);
+
 struct OutputChoice {
     std::string directory;  ///< empty: none
     FrameKind frames = FrameKind::png;
@@ -47,12 +52,14 @@ struct SimulateOptions {
     std::string task;  ///< empty: not scored
     bool session = false;  ///< stored as a session instead of written to a directory
     std::string trainee, data;
+    gpu::BackendWish backend;
 };
 int simulate(const SimulateOptions& options);
 
 struct InspectOptions {
     SceneChoice scene;
     bool json = false;
+    bool devices = false;  ///< list these instead
 };
 int inspect(const InspectOptions& options);
 
@@ -68,6 +75,7 @@ struct ReplayOptions {
     bool verify = false;
     double from_s = 0.0;  ///< begin there, from the checkpoint before
     OutputChoice output;
+    gpu::BackendWish backend;
 };
 int replay(const ReplayOptions& options);
 
@@ -82,6 +90,7 @@ struct ViewOptions {
     std::string data, trainee;  ///< of the sessions, see SessionOptions
     std::string haptics;        ///< haptic device for the right hand; empty: none
     double haptics_gain = 1.0;  ///< of its force
+    gpu::BackendWish backend;
 };
 int view(const ViewOptions& options);
 
@@ -94,6 +103,7 @@ struct BenchOptions {
     bool quick = false;
     bool real_time = false;
     ProgressKind progress = ProgressKind::automatic;
+    gpu::BackendWish backend;
 };
 int bench(const BenchOptions& options);
 
@@ -114,6 +124,7 @@ struct SessionOptions {
     std::optional<std::int64_t> continues;
     double from_s = 0.0;
     int frames = 60;  ///< of the debrief; -1: no debrief
+    gpu::BackendWish backend;  ///< of a session that starts anew
     int threads = 0;
     ProgressKind progress = ProgressKind::automatic;
 };

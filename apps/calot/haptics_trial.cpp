@@ -86,14 +86,14 @@ class Bench {
         input_.pedal = false;
         held_ = session_.drive(input_);
         run_.tick(input_);
-        session_.feel(run_.state());
+        session_.feel(run_.figures());
         if (trial_.rows.empty() && !held_) return;
         if (trial_.rows.size() >= ticks_) return;
         session_.servo_state(servo_);
         HapticRow row;
         row.time_s = static_cast<double>(trial_.rows.size()) * run_.model().tick_s;
         row.tip_m = input_.hook.position_m;
-        row.tissue_N = run_.state().hook_force_N;
+        row.tissue_N = run_.figures().hook_force_N;
         row.device_N = servo_.device_force_N;
         row.absorbed_J = servo_.absorbed_J;
         row.fault = servo_.fault;

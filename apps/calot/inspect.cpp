@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "calot/base/error.h"
 #include "calot/base/units.h"
 #include "calot/deformation/integrate.h"
 #include "calot/deformation/topology.h"
@@ -193,7 +194,43 @@ void print_text(const Json& j) {
 
 }  // namespace
 
+namespace {
+
+/// One line a device, or as JSON.
+void list_devices(bool as_json) {
+    const std::vector<gpu::DeviceInfo> all = gpu::devices();
+    Json list = Json::array();
+    for (const gpu::DeviceInfo& d : all)
+        list.push_back({{"device", list.size()},
+                        {"api", d.api == gpu::Api::cuda ? "CUDA" : "OpenCL"},
+                        {"name", d.name},
+                        {"vendor", d.vendor},
+                        {"version", d.version},
+                        {"memory_bytes", d.memory_bytes},
+                        {"compute_units", d.compute_units},
+                        {"is_gpu", d.is_gpu}});
+    if (as_json) {
+        fmt::print("{}\n", list.dump(2, ' ', false, Json::error_handler_t::replace));
+        return;
+    }
+    if (list.empty()) fmt::print("no driver of OpenCL or CUDA offers a device; the CPU computes\n");
+    for (const Json& d : list)
+        fmt::print("{:>3}  {:<7}{}  {}\n            {}, {} compute units, {} MB{}\n", d["device"].get<std::size_t>(),
+                   d["api"].get<std::string>(), d["name"].get<std::string>(), d["vendor"].get<std::string>(),
+                   d["version"].get<std::string>(), d["compute_units"].get<int>(),
+                   d["memory_bytes"].get<std::uint64_t>() >> 20,
+                   d["is_gpu"].get<bool>() ? "" : "; not a GPU: --backend auto does not take it");
+}
+
+}  // namespace
+
 int inspect(const InspectOptions& options) {
+    if (options.devices) {
+        list_devices(options.json);
+        return kDone;
+    }
+    if (options.scene.path.empty())
+        throw InputError("there is no scene to inspect", "name one, or list devices with --devices");
     const simulation::Setup setup = build_setup(load_scene(options.scene));
     const Json description = describe(setup);
     if (options.json)

@@ -22,6 +22,7 @@ Examples:
   calot simulate scenes/block.toml --duration 1 --frames none
   calot simulate scenes/block.toml --set electric.voltage_limit_V=200 --set materials.fat.youngs_modulus_kPa=8
   calot inspect scenes/calot.toml                       what the scene is made of
+  calot inspect --devices                               GPUs that there are
   calot view                                            operate on the standard patient, in a window
   calot replay out/calot/recording.calot --verify       run it again and compare bit for bit
   calot bench --suite kernels                           how fast each part is on this machine
@@ -93,6 +94,15 @@ void add_output_options(CLI::App& command, OutputChoice& output) {
                      "Replace the output directory if it exists, once the new one is complete");
 }
 
+void add_backend_options(CLI::App& command, gpu::BackendWish& wish) {
+    add_word<gpu::BackendKind>(command, "--backend", wish.kind, {"cpu", "gpu", "auto"},
+                               {gpu::BackendKind::cpu, gpu::BackendKind::gpu, gpu::BackendKind::automatic},
+                               "Who computes: cpu (unless said), gpu, or auto, which says what it took and why (docs/gpu.md)");
+    command.add_option("--device", wish.device, "Which GPU, as `calot inspect --devices` counts them")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1024));
+}
+
 void add_view_options(CLI::App& command, ViewOptions& options) {
     add_scene_options(command, options.scene);
     command.get_option("scene")->required(false);
@@ -119,6 +129,7 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
         ->check(CLI::IsMember({"auto", "openhaptics", "simulated", "network"}));
     command.add_option("--haptics-gain", options.haptics_gain, "Force on the hand over the true one")
         ->check(CLI::Range(0.0, 100.0));
+    add_backend_options(command, options.backend);
     command.footer("\nWithout SCENE it opens the standard patient. F1 in the window shows the controls.");
 }
 
@@ -143,6 +154,7 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
     add_word<ProgressKind>(command, "--progress", options.progress, {"auto", "plain", "none"},
                            {ProgressKind::automatic, ProgressKind::plain, ProgressKind::none},
                            "auto (a bar on a terminal, lines otherwise), plain or none");
+    add_backend_options(command, options.backend);
     command.footer(
         "\nWithout --json and --html it writes out/bench/bench.json and out/bench/bench.html.\n"
         "What the figures mean: docs/performance.md.");
@@ -206,6 +218,7 @@ int run(int argc, char** argv) {
     CLI::App* simulate_command = app.add_subcommand("simulate", "Run a scene and write what happened");
     add_scene_options(*simulate_command, simulate_options.scene);
     add_output_options(*simulate_command, simulate_options.output);
+    add_backend_options(*simulate_command, simulate_options.backend);
     simulate_command->footer(
         std::string(
             "\nWithout --out it writes to out/NAME, NAME being that of the scene file: summary.json, timeline.csv,\n"
@@ -229,6 +242,10 @@ int run(int argc, char** argv) {
     CLI::App* inspect_command = app.add_subcommand("inspect", "Say what a scene is made of, without running it");
     add_scene_options(*inspect_command, inspect_options.scene);
     inspect_command->add_flag("--json", inspect_options.json, "As JSON");
+    inspect_command->get_option("scene")->required(false);
+    inspect_command
+        ->add_flag("--devices", inspect_options.devices, "List what --backend gpu could compute on, instead of a scene")
+        ->excludes("scene");
     inspect_command->callback([&] { code = inspect(inspect_options); });
 
     MaterialsOptions materials_options;
@@ -247,9 +264,11 @@ int run(int argc, char** argv) {
         ->add_option("--from", replay_options.from_s, "Begin at this moment, from the checkpoint before it if there is one")
         ->type_name("SECONDS")
         ->check(CLI::NonNegativeNumber);
-    replay_command->add_flag("--verify", replay_options.verify,
+    CLI::Option* verify = replay_command->add_flag("--verify", replay_options.verify,
                              "Compare the state with the recording every second; exit code 1 at the first difference");
     add_output_options(*replay_command, replay_options.output);
+    add_backend_options(*replay_command, replay_options.backend);
+    replay_command->get_option("--backend")->excludes(verify);  // another backend rounds otherwise
     replay_command->footer(std::string("\nWithout --out nothing is written.\n") + kExamples);
     replay_command->callback([&] { code = replay(replay_options); });
 

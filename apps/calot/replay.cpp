@@ -72,7 +72,9 @@ int replay(const ReplayOptions& options) {
 
     RunPlan plan;
     plan.scene = scene::parse(recording.scene_text, options.recording + " (its scene)", ".");
-    plan.setup = std::make_shared<simulation::Setup>(build_setup(plan.scene));
+    const auto setup = std::make_shared<simulation::Setup>(build_setup(plan.scene));
+    use_backend(options.backend, *setup);
+    plan.setup = setup;
     plan.output = options.output;
     plan.ticks = static_cast<std::int64_t>(recording.inputs.size());
     training::Moment moment;

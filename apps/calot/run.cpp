@@ -50,7 +50,12 @@ class Outputs {
         picture_->fill(run, input, *view);
         frames_.submit(std::move(view));
     }
-    void record(const tissue::Input& input, const tissue::State& state) { recording_.add(input, state); }
+    void record(const tissue::Input& input, const simulation::Simulation& run) {
+        if (recording_.hashes_at(run.figures().tick))
+            recording_.add(input, run.state());
+        else
+            recording_.add(input);
+    }
 
     void finish(const simulation::Simulation& run, RunRecord& record) {
         recording_.finish(run.state());
@@ -128,8 +133,8 @@ RunRecord perform(const RunPlan& plan) {
         record.conductors = conductors(run.model());
         Timeline timeline(outputs ? outputs->directory().path("timeline.csv") : "", record.conductors);
         Progress progress(plan.output.progress, duration_s);
-        tissue::Input input = plan.input(run.state().tick, run.time_s());
-        for (std::int64_t tick = run.state().tick; tick < plan.ticks && !record.interrupted && !record.stopped_by_observer; ++tick) {
+        tissue::Input input = plan.input(run.figures().tick, run.time_s());
+        for (std::int64_t tick = run.figures().tick; tick < plan.ticks && !record.interrupted && !record.stopped_by_observer; ++tick) {
             input = plan.input(tick, run.time_s());
             if (outputs) outputs->look(run, input);
             if (tick % kTicksPerRow == 0) timeline.add(make_row(run, input));
@@ -139,11 +144,11 @@ RunRecord perform(const RunPlan& plan) {
             record.tick_us.add(tick_s * 1e6);
             record.wall_ticks_s += tick_s;
             for (std::size_t k = 0; k < record.stages_us.size(); ++k)
-                record.stages_us[k].add(static_cast<double>(run.work().stage_us[k]));
-            const double force_N = glm::length(run.state().hook_force_N);
+                record.stages_us[k].add(static_cast<double>(run.stage_us()[k]));
+            const double force_N = glm::length(run.figures().hook_force_N);
             if (force_N > 0.0) record.force_N.add(force_N);
             activations.look(run, input);
-            if (outputs) outputs->record(input, run.state());
+            if (outputs) outputs->record(input, run);
             if (plan.observe && !plan.observe(run, input)) record.stopped_by_observer = true;
             if (tick % kTicksPerLook == 0) watch.look(run.model(), run.state(), run.time_s());
             if (tick % kTicksPerFlush == 0) timeline.flush();
@@ -152,6 +157,7 @@ RunRecord perform(const RunPlan& plan) {
             if (!ok) break;
         }
         progress.finish();
+        for (const std::string& notice : run.notices()) record.notes.push_back(notice);
         watch.look(run.model(), run.state(), run.time_s());
         record.injuries = watch.injuries();
         activations.finish(run);

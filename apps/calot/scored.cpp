@@ -22,7 +22,7 @@ void score_against(const training::Task& task, RunPlan& plan, bool to_the_end) {
     };
     plan.observe = [measuring, to_the_end](const simulation::Simulation& run, const tissue::Input& input) {
         measuring->meter->after_tick(run, input);
-        measuring->watch.after_tick(*measuring->meter, run.state().tick, run.time_s());
+        measuring->watch.after_tick(*measuring->meter, run.figures().tick, run.time_s());
         return to_the_end || !measuring->watch.ended();
     };
     plan.conclude = [measuring](RunRecord& record) {

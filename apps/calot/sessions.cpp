@@ -65,7 +65,9 @@ int session(const SessionOptions& options) {
         live.emplace(store, start, from);
         run = std::move(from.run);
     } else {
-        setup = std::make_shared<simulation::Setup>(build_setup(load_scene(options.scene)));
+        const auto made = std::make_shared<simulation::Setup>(build_setup(load_scene(options.scene)));
+        use_backend(options.backend, *made);
+        setup = made;
         run = std::make_unique<simulation::Simulation>(setup);
         live.emplace(store, start, *run);
     }
@@ -83,7 +85,7 @@ int session(const SessionOptions& options) {
     const std::string page =
         options.frames >= 0 ? write_debrief(store, row.id, options.frames, options.progress) : std::string();
     if (options.progress != ProgressKind::none) print_end(*live, row, page);
-    return interrupted() ? kInterrupted : run->state().status.ok ? kDone : kFailed;
+    return interrupted() ? kInterrupted : run->figures().status.ok ? kDone : kFailed;
 }
 
 std::string write_debrief(training::Store& store, std::int64_t id, int frames, ProgressKind progress) {

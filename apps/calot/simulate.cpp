@@ -19,6 +19,7 @@ int simulate(const SimulateOptions& options) {
         stored.frames = options.output.frames == FrameKind::none ? 0 : stored.frames;
         stored.threads = options.output.threads;
         stored.progress = options.output.progress;
+        stored.backend = options.backend;
         return session(stored);
     }
     RunPlan plan;
@@ -28,6 +29,7 @@ int simulate(const SimulateOptions& options) {
         plan.output.directory =
             (std::filesystem::path("out") / std::filesystem::path(options.scene.path).stem()).string();
     auto setup = std::make_shared<simulation::Setup>(build_setup(plan.scene));
+    use_backend(options.backend, *setup);
     plan.setup = setup;
     plan.ticks = std::max<std::int64_t>(1, std::llround(setup->duration_s / setup->model.tick_s));
     plan.input = [setup](std::int64_t, double time_s) { return setup->script.at(time_s); };

@@ -61,7 +61,7 @@ TimelineRow make_row(const simulation::Simulation& run, const tissue::Input& inp
     row.links_severed = state.links_severed;
     row.volume_removed_m3 =
         static_cast<double>(state.hexels_burnt + state.hexels_fallen) * run.model().hexel_volume_m3();
-    row.emitted_kg = run.work().smoke.emitted_kg();
+    row.emitted_kg = run.smoke().emitted_kg();
     row.energy_J = state.energy_J;
     row.tip = state.tip;
     row.field = state.field;

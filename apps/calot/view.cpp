@@ -70,6 +70,7 @@ int view(const ViewOptions& options) {
         if (wish.any_patient) choice.seed = wish.seed;
         return load_scene(choice);
     };
+    trainer.prepare = [&options](simulation::Setup& setup) { use_backend(options.backend, setup); };
     std::string trouble;
     trainer.exercises = training_exercises(options.data, options.trainee, trouble, trainer.cut_off);
     if (!trouble.empty()) fmt::print(stderr, "calot: note: sessions will not be stored: {}\n", trouble);

@@ -119,7 +119,8 @@ void race_surface() {
     race.prepare = whole;
     race.ours = [&] {
         exchange.removed_hexels = gone;
-        surface.update_dirty_blocks(model, state, exchange);
+        surface.remove(exchange);
+        surface.redo_dirty_blocks();
     };
     race.theirs = [&] {
         edges->Modified();

@@ -3,6 +3,7 @@
 // Used by embedding and by the search for near hexels.
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -149,22 +150,30 @@ struct CarrierFields {
     }
 };
 
+/// Four floats with ordinary arithmetic, and a field as such.
+using Four = float __attribute__((vector_size(16)));
+using FieldFours = std::array<Four, CarrierFields::kComponents / 4>;
+static_assert(sizeof(FieldFours) == sizeof(float) * CarrierFields::kComponents);
+inline FieldFours fours(const std::array<float, CarrierFields::kComponents>& field) {
+    return std::bit_cast<FieldFours>(field);
+}
+
 /// sum_n weight[n] field[n] / sum_n weight[n]. The first carrier alone where all weights vanish.
 inline std::array<float, CarrierFields::kComponents> blend(const CarrierFields& fields, int count,
                                                            const float* weight) {
-    std::array<float, CarrierFields::kComponents> sum{};
+    // No branch where a weight is zero: they are hard to predict.
+    FieldFours sum{};
     float total = 0.0f;
     for (int n = 0; n < count; ++n) {
         const float w = weight[n];
-        if (w == 0.0f) continue;
         total += w;
-        const auto& field = fields.field[static_cast<std::size_t>(n)];
+        const FieldFours field = fours(fields.field[static_cast<std::size_t>(n)]);
         for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += w * field[c];
     }
     if (total <= 0.0f) return fields.field[0];
     const float inverse = 1.0f / total;
-    for (float& value : sum) value *= inverse;
-    return sum;
+    for (Four& value : sum) value *= inverse;
+    return std::bit_cast<std::array<float, CarrierFields::kComponents>>(sum);
 }
 
 /// Displacement a + G r.

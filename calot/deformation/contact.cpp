@@ -15,10 +15,6 @@ using tissue::State;
 
 namespace {
 
-/// Gauss-Seidel sweeps in the first substep of a tick, which has new points, and in the others. Both start from the
-/// impulses of the substep before.
-constexpr int kFirstSweeps = 6;
-constexpr int kSweeps = 4;
 /// Most phyxels that carry a point: the 5^3 about its own.
 constexpr std::size_t kMostCarriers = 125;
 /// Spacing of hexels to which ContactParameters::stiffness_N_per_m belongs; it grows with the area that a hexel has.
@@ -204,8 +200,7 @@ ContactWork make_contact_work(const Model& model) {
     return contact;
 }
 
-void prepare_contacts(const Model& model, const State& state, const tissue::Exchange& exchange, Work& work) {
-    ContactWork& contact = work.contact;
+void list_points(const Model& model, const State& state, const tissue::Exchange& exchange, ContactWork& contact) {
     contact.points.clear();
     contact.phyxel.clear();
     contact.stride = 0;
@@ -213,13 +208,22 @@ void prepare_contacts(const Model& model, const State& state, const tissue::Exch
     contact.started = false;
     add_touching(model, exchange, contact);
     add_held(model, state, contact);
-    if (contact.points.empty()) return;
-    for (std::size_t c = 0; c < contact.points.size(); ++c)
-        local_shares(model, state, work, contact.points[c].hexel, contact.local[c]);
+    recall(state, contact);
+}
+
+void carry_points(const Model& model, const State& state, Work& work) {
+    for (std::size_t c = 0; c < work.contact.points.size(); ++c)
+        local_shares(model, state, work, work.contact.points[c].hexel, work.contact.local[c]);
     fill_lines(model, work);
+}
+
+void prepare_contacts(const Model& model, const State& state, const tissue::Exchange& exchange, Work& work) {
+    ContactWork& contact = work.contact;
+    list_points(model, state, exchange, contact);
+    if (contact.points.empty()) return;
+    carry_points(model, state, work);
     couple_points(contact);
     place_held(model, state, exchange, contact);
-    recall(state, contact);
 }
 
 void solve_contacts(const Model& model, State& state, Work& work) {
@@ -236,9 +240,12 @@ void solve_contacts(const Model& model, State& state, Work& work) {
     contact.started = true;
     spread_impulses(contact);
     for (std::size_t row = 0; row < contact.phyxel.size(); ++row)
-        for (std::size_t r = 0; r < 3; ++r)
-            state.velocity_m_per_s[r][static_cast<std::size_t>(contact.phyxel[row])] +=
-                contact.inverse_mass_per_kg[row] * contact.row_impulse_Ns[r][row];
+        for (std::size_t r = 0; r < 3; ++r) {
+            const auto phyxel = static_cast<std::size_t>(contact.phyxel[row]);
+            const float more = contact.inverse_mass_per_kg[row] * contact.row_impulse_Ns[r][row];
+            state.velocity_m_per_s[r][phyxel] += more;
+            state.displacement_m[r][phyxel] += work.substep_s * more;
+        }
 
     for (std::size_t c = 0; c < contact.points.size(); ++c) {
         ContactPoint& point = contact.points[c];

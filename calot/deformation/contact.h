@@ -92,6 +92,17 @@ ContactWork make_contact_work(const tissue::Model& model);
 void prepare_contacts(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
                       Work& work);
 
+/// Parts of it, for whoever solves elsewhere. Which points there are, with the impulses they start from:
+void list_points(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
+                 ContactWork& contact);
+/// and what carries them: rows and lines of psi.
+void carry_points(const tissue::Model& model, const tissue::State& state, Work& work);
+
+/// Gauss-Seidel sweeps in the first substep of a tick, which has new points, and in the others. Both start from the
+/// impulses of the substep before.
+inline constexpr int kFirstSweeps = 6;
+inline constexpr int kSweeps = 4;
+
 /// In a substep, once velocities are known: makes them obey the contacts.
 void solve_contacts(const tissue::Model& model, tissue::State& state, Work& work);
 

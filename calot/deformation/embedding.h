@@ -23,11 +23,24 @@ void embed_points(const tissue::Model& model, const tissue::State& state, const 
                   std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner, std::span<Vec3f> world_m,
                   std::span<Mat3f> deformation_gradient = {});
 
+/// How far from the surface of an instrument hexels are near it.
+struct NearReach {
+    double bare_m = 0.0;     ///< from bare metal
+    double hook_m = 0.0;     ///< from the rest of the hook
+    double grasper_m = 0.0;  ///< from the grasper
+
+    NearReach(double all_m) : bare_m(all_m), hook_m(all_m), grasper_m(all_m) {}
+    NearReach(double bare, double hook, double grasper) : bare_m(bare), hook_m(hook), grasper_m(grasper) {}
+    double of(const tissue::Capsule& capsule) const {
+        return capsule.instrument == tissue::Instrument::grasper ? grasper_m : capsule.bare ? bare_m : hook_m;
+    }
+};
+
 /// Fills Exchange::near with the surface hexels (present, with a face neighbour that is neither present nor held) whose
-/// world position lies within `reach_m` of any capsule in Exchange::capsules, in the order of their cells. Never more
+/// world position lies within reach of any capsule in Exchange::capsules, in the order of their cells. Never more
 /// than the capacity reserved (reserve_exchange): beyond it the nearest are kept.
 void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, Work& work,
-               double reach_m);
+               const NearReach& reach);
 
 /// The phyxels that carry a material point and their weights phi_j >= 0. Weights sum to 1; count 0: nothing carries it.
 struct Stencil {

@@ -21,11 +21,14 @@ const Mirror& find_mirror(const Work& work, std::int64_t ghost);
 /// Finds out anew which phyxels a ghost mirrors. Its links must be current.
 void refresh_mirror(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t ghost);
 
-/// Sets the ghosts' displacements from those of the phyxels.
+/// Work::images from Work::mirrors, if any of these changed.
+void refresh_images(Work& work);
+
+/// Sets the ghosts' displacements from those of the phyxels, and their velocities to 0. Images must be current.
 void move_ghosts(tissue::State& state, const Work& work);
 
-/// Hands the impulses [N s] that the velocity sweep left in the ghosts' velocities on to the phyxels, and clears them.
-/// `decay` is the sweep's.
+/// Hands the impulses [N s] that the motion sweep left in the ghosts' velocities on to the phyxels, which it has moved.
+/// `decay` is the sweep's. Images must be current.
 void return_ghost_impulses(tissue::State& state, const Work& work, float decay);
 
 }  // namespace calot::deformation

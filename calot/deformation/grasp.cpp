@@ -98,7 +98,6 @@ void add_held(const Model& model, const State& state, ContactWork& contact) {
 }
 
 void place_held(const Model& model, const State& state, const tissue::Exchange& exchange, ContactWork& contact) {
-    const GrasperState& grasper = state.grasper;
     for (std::size_t c = 0; c < contact.points.size(); ++c) {
         ContactPoint& point = contact.points[c];
         if (!point.held()) continue;
@@ -110,11 +109,16 @@ void place_held(const Model& model, const State& state, const tissue::Exchange& 
             moved_m += psi[row] * Vec3f(state.displacement_m[0][phyxel], state.displacement_m[1][phyxel],
                                         state.displacement_m[2][phyxel]);
         }
-        const Vec3 place_m(grasper.place_m[static_cast<std::size_t>(point.near)]);
-        const Vec3 from = in_world(grasper.pose, place_m), to = in_world(exchange.grasper.pose, place_m);
-        point.away_m = Vec3f(model.hexels.centre_m(point.hexel) + Vec3(moved_m) - from);
-        point.tool_velocity_m_per_s = Vec3f((to - from) / model.tick_s);
+        place_point(model, state, exchange, moved_m, point);
     }
+}
+
+void place_point(const Model& model, const State& state, const tissue::Exchange& exchange, const Vec3f& moved_m,
+                 ContactPoint& point) {
+    const Vec3 place_m(state.grasper.place_m[static_cast<std::size_t>(point.near)]);
+    const Vec3 from = in_world(state.grasper.pose, place_m), to = in_world(exchange.grasper.pose, place_m);
+    point.away_m = Vec3f(model.hexels.centre_m(point.hexel) + Vec3(moved_m) - from);
+    point.tool_velocity_m_per_s = Vec3f((to - from) / model.tick_s);
 }
 
 void slip_held(State& state, const tissue::Exchange& exchange, const ContactWork& contact) {

@@ -37,6 +37,10 @@ void add_held(const tissue::Model& model, const tissue::State& state, ContactWor
 void place_held(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
                 ContactWork& contact);
 
+/// Says of a held point where it is, moved by so much from rest, and how its place moves.
+void place_point(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
+                 const Vec3f& moved_m, ContactPoint& point);
+
 /// After the last substep: places that slipped move after their points.
 void slip_held(tissue::State& state, const tissue::Exchange& exchange, const ContactWork& contact);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "calot/base/parallel.h"
 #include "calot/deformation/ghosts.h"
@@ -35,6 +34,24 @@ void run(const char* name, Sweep sweep, const KernelView& view, Work& work) {
     });
 }
 
+/// Gradients and motion of all groups. Chunks whose neighbours belong to another thread are moved when all gradients
+/// are there.
+void run_both(const KernelView& view, Work& work) {
+    const Groups groups(work.groups);
+    const auto count = static_cast<std::int64_t>(groups.size());
+    const std::int64_t chunks = std::max<std::int64_t>(1, count / kOneTask), chunk = (count + chunks - 1) / chunks;
+    auto range = [&](std::int64_t low) { return GroupRange{low, std::min(low + chunk, count)}; };
+    parallel_for("deformation.both", 0, count, chunk, [&](std::int64_t low, std::int64_t) {
+        const GroupRange gradients = range(low);
+        sweep_both(view, groups, gradients, inner_groups(view, groups, gradients));
+    });
+    parallel_for("deformation.borders", 1, chunks, 1, [&](std::int64_t border, std::int64_t) {
+        const std::int64_t low = inner_groups(view, groups, range((border - 1) * chunk)).end,
+                           high = inner_groups(view, groups, range(border * chunk)).begin;
+        sweep_motion(view, groups.subspan(static_cast<std::size_t>(low), static_cast<std::size_t>(high - low)));
+    });
+}
+
 std::int64_t first_bad_cell(const Model& model, const State& state) {
     for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p) {
         const auto i = static_cast<std::size_t>(p);
@@ -44,18 +61,16 @@ std::int64_t first_bad_cell(const Model& model, const State& state) {
     return -1;
 }
 
-/// Infinities and NaN have all exponent bits set; as integers, so that the loop is wide.
+/// Where a displacement is no number, neither is the stretch of its phyxel and neighbours: Group::overstretched has
+/// both.
 bool all_finite(const State& state, const Work& work) {
-    constexpr std::uint32_t kExponent = 0x7f800000u;
-    std::uint32_t bad = 0;
-    for (const auto& u : state.displacement_m)
-        for (const Group& group : work.groups)
-            for (std::int64_t k = 0; k < kGroupCells; ++k) {
-                std::uint32_t bits;
-                std::memcpy(&bits, &u[static_cast<std::size_t>(group.first + k)], sizeof(bits));
-                bad |= (bits & kExponent) == kExponent ? 1u : 0u;
-            }
-    return bad == 0;
+    for (const Group& group : work.groups)
+        for (std::uint32_t rest = group.overstretched; rest != 0; rest &= rest - 1) {
+            const auto i = static_cast<std::size_t>(group.first + __builtin_ctz(rest));
+            for (const auto& u : state.displacement_m)
+                if (!std::isfinite(u[i])) return false;
+        }
+    return true;
 }
 
 }  // namespace
@@ -107,6 +122,7 @@ KernelView KernelView::make(const Model& model, State& state, Work& work) {
         view.gradient[e] = work.gradient[e].data();
         view.moment_stress[e] = work.moment_stress[e].data();
         view.offset[e] = model.phyxels.offset(tissue::kLinkDirections[e]);
+        view.reach = std::max(view.reach, std::abs(view.offset[e]));
     }
     for (std::size_t e = 0; e < 6; ++e) view.moment_inverse[e] = work.moment_inverse[e].data();
     view.stiffening = work.stiffening.data();
@@ -159,16 +175,17 @@ void advance(const Model& model, State& state, tissue::Exchange& exchange, Work&
     const KernelView view = KernelView::make(model, state, work);
     KernelView within_tick = view;
     within_tick.embedding = false;
+    refresh_images(work);
     for (int substep = 0; substep < work.substeps; ++substep) {
-        // Forces read the neighbours' displacements and moment stresses, gradients the neighbours' displacements:
-        // each sweep must end everywhere before the next begins.
-        run("deformation.velocities", sweep_velocities, view, work);
+        if (substep == 0)
+            run("deformation.motion", sweep_motion, view, work);
+        else
+            run_both(within_tick, work);
         return_ghost_impulses(state, work, view.decay);
         solve_contacts(model, state, work);
-        run("deformation.displacements", sweep_displacements, view, work);
         move_ghosts(state, work);
-        run("deformation.gradients", sweep_gradients, substep + 1 < work.substeps ? within_tick : view, work);
     }
+    run("deformation.gradients", sweep_gradients, view, work);
     exchange.contact_force_N = work.contact.impulse_Ns[0] / -model.tick_s;
     exchange.grasper_contact_force_N = work.contact.impulse_Ns[1] / -model.tick_s;
     slip_held(state, exchange, work.contact);

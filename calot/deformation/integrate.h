@@ -6,6 +6,8 @@
 //   u' = u + dt v'                                                and ghosts follow: ghosts.h
 //   G, M from u'
 
+#include <span>
+
 #include "calot/deformation/work.h"
 
 namespace calot::deformation {
@@ -19,10 +21,11 @@ void check(const tissue::Model& model, tissue::State& state, const Work& work);
 /// Both, unless State::status is not ok.
 void integrate(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
-/// Recomputes rest properties of one phyxel (moment, volume, constants, hourglass, mass), of the ghosts beside it and
-/// the masses of its neighbours, from links and Work::occupancy. Call it for every phyxel whose hexels or links
-/// changed, after all of them have changed.
-void refresh_phyxel(const tissue::Model& model, const tissue::State& state, Work& work, std::int64_t phyxel);
+/// Recomputes rest properties (moment, volume, constants, hourglass, mass) of phyxels whose hexels or links changed, of
+/// the ghosts beside them and the masses of their neighbours, from links and Work::occupancy. Call it once for all of
+/// them, after all have changed. Nothing is allocated.
+void refresh_phyxels(const tissue::Model& model, const tissue::State& state, Work& work,
+                     std::span<const std::int64_t> phyxels);
 /// The same for all at once.
 void refresh_all_phyxels(const tissue::Model& model, const tissue::State& state, Work& work);
 

@@ -3,8 +3,16 @@
 // cells of the groups that they are given, and lanes are independent: any split of the groups, any vector width and any
 // instruction set give the same bytes (no fused multiply-add, no sums across lanes).
 //
+// Motion of a cell asks for the moment stresses of its neighbours, and gradients for their displacements before they
+// move. So one pass can do both, motion a reach (the furthest neighbour, about a plane of the lattice) behind:
+//
+//     groups    . . . . m m m m m m m . . . . . . g g g g g g g . . . .
+//                   moved   ^ motion  <- reach ->  ^ gradients    not yet seen
+//
+// What lies between stays in the cache.
+//
 // What a cell's force needs from its own place alone, M_i sum w X_ij and the hourglass force, belongs to displacements
-// that the gradient sweep has at hand: it leaves both in `own_force`, and the velocity sweep reads the neighbours'
+// that the gradient sweep has at hand: it leaves both in `own_force`, and the motion sweep reads the neighbours'
 // moment stresses only.
 
 #include <array>
@@ -32,7 +40,9 @@ struct KernelView {
     const float* lame_mu_Pa = nullptr;
     const float* lame_lambda_Pa = nullptr;
     std::array<std::int64_t, 9> offset{};  ///< of the nine positive directions
-    bool embedding = true;  ///< the gradient sweep stores G, also ghosts', for whoever embeds points, and how far F stretches
+    std::int64_t reach = 0;                ///< of the furthest
+    bool embedding =
+        true;  ///< the gradient sweep stores G, also ghosts', for whoever embeds points, and how far F stretches
     tissue::ElasticLaw law = tissue::ElasticLaw::stable_neo_hookean;
     float volume_stiffness_Pa = 0.0f;
     float spacing_m = 0.0f;
@@ -57,10 +67,18 @@ using Groups = std::span<Group>;
 
 /// G and M.
 void sweep_gradients(const KernelView& view, Groups groups);
-/// Velocities after a substep of elastic forces, gravity and damping. Ghosts, which have none, get the impulse [N s] of
-/// the forces on them instead.
-void sweep_velocities(const KernelView& view, Groups groups);
-/// Displacements after a substep at the present velocities.
-void sweep_displacements(const KernelView& view, Groups groups);
+/// Velocities and displacements after a substep of elastic forces, gravity and damping. Ghosts, which have neither, get
+/// the impulse [N s] of the forces on them instead of a velocity.
+void sweep_motion(const KernelView& view, Groups groups);
+
+/// Groups [begin, end) of Work::groups.
+struct GroupRange {
+    std::int64_t begin = 0, end = 0;
+};
+/// Both in one pass over memory: G and M of some groups and, as soon as those of all their neighbours are there, motion
+/// of others among them. `motion` may hold groups whose neighbours are all in `gradients`.
+void sweep_both(const KernelView& view, Groups all, GroupRange gradients, GroupRange motion);
+/// Those of `gradients` that can be moved in the same pass, because all their neighbours are in it as well.
+GroupRange inner_groups(const KernelView& view, Groups all, GroupRange gradients);
 
 }  // namespace calot::deformation

@@ -6,8 +6,8 @@
 //
 //      Group::plus[d]:  ... 1 1 0 1 1 1 0 0 ...      lanes of cell i .. i + N - 1
 //
-// Sums run over faces first (their weight is applied once), then edges (weight 1). Lengths are in units of the spacing s
-// until the end. Multiplication and addition stay separate so that instruction sets with and without fused
+// Sums run over faces first (their weight is applied once), then edges (weight 1). Lengths are in units of the spacing
+// s until the end. Multiplication and addition stay separate so that instruction sets with and without fused
 // multiply-add give the same bytes.
 //
 // What a substep costs, for 16 cells: 72 loads of neighbours' values in the gradient sweep (u and kappa at 18 places),
@@ -219,7 +219,8 @@ HWY_INLINE void stress(const KernelView& k, const Lanes (&g)[9], Lanes mu, Lanes
 
 /// How far F stretches, for tear.cpp and stable_mass.h.
 template <tissue::ElasticLaw law>
-HWY_INLINE void measure_stretch(const KernelView& k, const Place& at, const Lanes (&g)[9], const Lanes (&cofactor_f)[9]) {
+HWY_INLINE void measure_stretch(const KernelView& k, const Place& at, const Lanes (&g)[9],
+                                const Lanes (&cofactor_f)[9]) {
     const D d;
     Lanes f[9];
     for (int e = 0; e < 9; ++e) f[e] = e % 4 == 0 ? all(1.0f) + g[e] : g[e];
@@ -228,7 +229,7 @@ HWY_INLINE void measure_stretch(const KernelView& k, const Place& at, const Lane
     if constexpr (law == tissue::ElasticLaw::saint_venant_kirchhoff)  // d(F S)/dF: (3 lambda^2 - 1) / 2 along a stretch
         stiffening = Lanes{hn::Max(stiffening.v, (all(1.5f) * (stretch - all(3.0f))).v)};
     store(Lanes{hn::Max(stiffening.v, hn::Zero(d))}, k.stiffening + at.i);
-    at.mark(at.group.overstretched, hn::Gt(stretch.v, hn::Set(d, k.most_squared_stretch)));
+    at.mark(at.group.overstretched, hn::Not(hn::Le(stretch.v, hn::Set(d, k.most_squared_stretch))));
     at.mark(at.group.stiffened, hn::Gt(stiffening.v, hn::Set(d, kStiffer)));
 }
 
@@ -320,7 +321,7 @@ HWY_INLINE void add_stresses(const KernelView& k, const Place& at, Lanes (&sum)[
     for (int r = 0; r < 3; ++r) sum[r] = sum[r] + (plus[r] - minus[r]);
 }
 
-HWY_INLINE void velocities_of(const KernelView& k, const Place& at) {
+HWY_INLINE void motion_of(const KernelView& k, const Place& at) {
     const std::int64_t i = at.i;
     Lanes sum[3];
     for (int r = 0; r < 3; ++r) sum[r] = all(0.0f);
@@ -337,6 +338,7 @@ HWY_INLINE void velocities_of(const KernelView& k, const Place& at) {
     const Lanes spacing = all(k.spacing_m), decay = all(k.decay);
     const Lanes inverse_mass = load(k.inverse_mass_per_kg + i), gravity_share = load(k.gravity_share + i);
     const Mask present = at.mask(at.group.present), ghost = at.mask(at.group.ghost);
+    const Lanes dt = all(k.substep_s);
     for (int r = 0; r < 3; ++r) {
         const auto row = static_cast<std::size_t>(r);
         const Lanes impulse = all(k.substep_s) * (spacing * sum[r] + load(k.own_force_N[row] + i));
@@ -344,25 +346,41 @@ HWY_INLINE void velocities_of(const KernelView& k, const Place& at) {
         const Lanes gravity = all(k.gravity_step_m_per_s[row]) * gravity_share;
         const Lanes velocity = decay * (load(v) + inverse_mass * impulse + gravity);
         store(where(present, velocity) + where(ghost, impulse), v);
+        float* u = k.displacement_m[row] + i;
+        store(load(u) + where(present, dt * velocity), u);
     }
 }
 
-void velocities(const KernelView& k, Groups groups) {
+void motion(const KernelView& k, Groups groups) {
     for_each_vector(
         groups, [](const Group& group) { return std::uint32_t{group.present} | group.ghost; },
-        [&](const Place& at) HWY_ATTR { velocities_of(k, at); });
+        [&](const Place& at) HWY_ATTR { motion_of(k, at); });
 }
 
-void displacements(const KernelView& k, Groups groups) {
-    const Lanes dt = all(k.substep_s);
-    for_each_vector(
-        groups, [](const Group& group) { return std::uint32_t{group.present}; },
-        [&](const Place& at) HWY_ATTR {
-            for (int r = 0; r < 3; ++r) {
-                float* u = k.displacement_m[r] + at.i;
-                store(load(u) + dt * load(k.velocity_m_per_s[r] + at.i), u);
-            }
-        });
+/// Groups after which gradients and motion take turns.
+constexpr std::int64_t kBatch = 32;
+
+template <tissue::ElasticLaw law>
+void both_with(const KernelView& k, Groups all, GroupRange of_gradients, GroupRange of_motion) {
+    auto at = [](std::int64_t n) { return static_cast<std::size_t>(n); };
+    std::int64_t next = of_motion.begin;
+    for (std::int64_t g = of_gradients.begin; g < of_gradients.end; g += kBatch) {
+        const std::int64_t g_end = std::min(g + kBatch, of_gradients.end);
+        gradients_with<law>(k, all.subspan(at(g), at(g_end - g)));
+        // Cells before this one are done, or were never asked for.
+        const std::int64_t done = g_end < of_gradients.end ? all[at(g_end)].first : std::int64_t{1} << 40;
+        std::int64_t end = next;
+        while (end < of_motion.end && all[at(end)].first + kGroupCells + k.reach <= done) ++end;
+        if (end > next) motion(k, all.subspan(at(next), at(end - next)));
+        next = end;
+    }
+}
+
+void both(const KernelView& k, Groups all, GroupRange of_gradients, GroupRange of_motion) {
+    if (k.law == tissue::ElasticLaw::stable_neo_hookean)
+        both_with<tissue::ElasticLaw::stable_neo_hookean>(k, all, of_gradients, of_motion);
+    else
+        both_with<tissue::ElasticLaw::saint_venant_kirchhoff>(k, all, of_gradients, of_motion);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -373,17 +391,29 @@ HWY_AFTER_NAMESPACE();
 namespace calot::deformation {
 
 HWY_EXPORT(gradients);
-HWY_EXPORT(velocities);
-HWY_EXPORT(displacements);
+HWY_EXPORT(motion);
+HWY_EXPORT(both);
 
 void sweep_gradients(const KernelView& view, Groups groups) {
     HWY_DYNAMIC_DISPATCH(gradients)(view, groups);
 }
-void sweep_velocities(const KernelView& view, Groups groups) {
-    HWY_DYNAMIC_DISPATCH(velocities)(view, groups);
+void sweep_motion(const KernelView& view, Groups groups) {
+    HWY_DYNAMIC_DISPATCH(motion)(view, groups);
 }
-void sweep_displacements(const KernelView& view, Groups groups) {
-    HWY_DYNAMIC_DISPATCH(displacements)(view, groups);
+void sweep_both(const KernelView& view, Groups all, GroupRange gradients, GroupRange motion) {
+    HWY_DYNAMIC_DISPATCH(both)(view, all, gradients, motion);
+}
+
+GroupRange inner_groups(const KernelView& view, Groups all, GroupRange gradients) {
+    const auto count = static_cast<std::int64_t>(all.size());
+    auto first = [&](std::int64_t g) { return std::int64_t{all[static_cast<std::size_t>(g)].first}; };
+    GroupRange inner = gradients;
+    if (gradients.begin > 0)
+        while (inner.begin < inner.end && first(inner.begin) - view.reach < first(gradients.begin)) ++inner.begin;
+    if (gradients.end < count)
+        while (inner.end > inner.begin && first(inner.end - 1) + kGroupCells + view.reach > first(gradients.end))
+            --inner.end;
+    return inner;
 }
 
 }  // namespace calot::deformation

@@ -20,10 +20,6 @@ namespace calot::deformation {
 
 namespace {
 
-/// Beyond the reach, how far from a capsule a phyxel's centre may be and still own a hexel within reach, in spacings:
-/// half a cell's diagonal is 0.87, stretched by up to 1.7.
-constexpr double kPhyxelMargin = 1.5;
-
 float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
     const Vec3f ap = p - capsule.a;
     const float t = std::min(1.0f, std::max(0.0f, glm::dot(ap, capsule.ab) * capsule.inverse_length2));
@@ -33,25 +29,39 @@ float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
 
 }  // namespace
 
-Capsules::Capsules(const std::vector<tissue::Capsule>& capsules) {
+Capsules::Capsules(const std::vector<tissue::Capsule>& capsules, const NearReach& reach) {
     for (const tissue::Capsule& c : capsules) {
         if (count == item.size()) break;
         const Vec3f a(c.a_m), ab = Vec3f(c.b_m) - a;
         const float length2 = glm::dot(ab, ab);
-        item[count++] = {a, ab, length2 > 0.0f ? 1.0f / length2 : 0.0f, static_cast<float>(c.radius_m), c.bare};
+        item[count++] = {a,
+                         ab,
+                         length2 > 0.0f ? 1.0f / length2 : 0.0f,
+                         static_cast<float>(c.radius_m),
+                         static_cast<float>(reach.of(c)),
+                         c.bare};
     }
 }
 
-float Capsules::distance(const Vec3f& p, std::uint32_t which) const {
+float Capsules::distance(const Vec3f& p) const {
     float nearest = 1e9f;
-    for (std::size_t k = 0; k < count; ++k)
-        if ((which >> k) & 1u) nearest = std::min(nearest, distance_to_surface(item[k], p));
+    for (std::size_t k = 0; k < count; ++k) nearest = std::min(nearest, distance_to_surface(item[k], p));
     return nearest;
 }
 
-std::uint32_t Capsules::within(const Vec3f& p, float reach_m) const {
+float Capsules::beyond_reach(const Vec3f& p, std::uint32_t which) const {
+    float least = 1e9f;
+    for (std::uint32_t rest = which; rest != 0; rest &= rest - 1) {
+        const CapsuleF& capsule = item[static_cast<std::size_t>(__builtin_ctz(rest))];
+        least = std::min(least, distance_to_surface(capsule, p) - capsule.reach);
+    }
+    return least;
+}
+
+std::uint32_t Capsules::within(const Vec3f& p, float further_m) const {
     std::uint32_t which = 0;
-    for (std::size_t k = 0; k < count; ++k) which |= (distance_to_surface(item[k], p) <= reach_m ? 1u : 0u) << k;
+    for (std::size_t k = 0; k < count; ++k)
+        which |= (distance_to_surface(item[k], p) - item[k].reach <= further_m ? 1u : 0u) << k;
     return which;
 }
 
@@ -81,44 +91,18 @@ std::uint64_t surface_hexels(const tissue::Model& model, const Work& work, const
     return own & ~inside;
 }
 
-/// The nine rows of three cells about a hexel, along the lattice's fastest axis: where they are, and for each of the
-/// eight ways to fill one, minus the sum of the directions to the filled ones, weighted by their inverse distance.
-struct Rows {
-    std::array<std::int64_t, 9> offset;  ///< of a row's first cell
-    std::array<std::array<Vec3f, 8>, 9> outward;
-
-    explicit Rows(const Lattice& hexels) {
-        const int fast = hexels.stride.x == 1   ? 0
-                         : hexels.stride.y == 1 ? 1
-                                                : 2,
-                  b = (fast + 1) % 3, c = (fast + 2) % 3;
-        for (int row = 0; row < 9; ++row) {
-            Int3 step(0);
-            step[b] = row % 3 - 1;
-            step[c] = row / 3 - 1;
-            step[fast] = -1;
-            offset[static_cast<std::size_t>(row)] = hexels.offset(step);
-            for (int bits = 0; bits < 8; ++bits) {
-                Vec3f& sum = outward[static_cast<std::size_t>(row)][static_cast<std::size_t>(bits)];
-                sum = Vec3f(0.0f);
-                for (int k = 0; k < 3; ++k) {
-                    step[fast] = k - 1;
-                    const Vec3f direction(step);
-                    if ((bits >> k) & 1) sum -= direction / std::fmax(1.0f, glm::dot(direction, direction));
-                }
-            }
-        }
-    }
-};
-
 /// Away from the tissue at rest: against the sum of the directions to the 26 neighbours that are filled. 0 where they
 /// balance, as in a sheet one hexel thick.
-Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const Rows& rows, std::int64_t hexel) {
-    Vec3f outward(0.0f);
+Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const OutwardRows& rows, std::int64_t hexel) {
+    Vec3f sum(0.0f);
     for (std::size_t row = 0; row < rows.offset.size(); ++row) {
         const std::int64_t cell = hexel + rows.offset[row];
-        outward += rows.outward[row][(state.hexel_present.bits32(cell) | model.hexel_held.bits32(cell)) & 7u];
+        const auto& row_outward =
+            kRowOutward[row][(state.hexel_present.bits32(cell) | model.hexel_held.bits32(cell)) & 7u];
+        sum += Vec3f(row_outward[0], row_outward[1], row_outward[2]);
     }
+    Vec3f outward;
+    for (int k = 0; k < 3; ++k) outward[rows.axis[k]] = sum[k];
     return outward;
 }
 
@@ -150,16 +134,19 @@ void keep(std::vector<tissue::NearHexel>& near, const tissue::NearHexel& item) {
 
 /// How far apart the displacements of any carrier and of the first can be, within `radius_m` of the phyxel's centre.
 float bound_spread(const CarrierFields& fields, int count, float radius_m) {
-    float most = 0.0f;
+    const FieldFours own = fours(fields.field[0]);
+    float offset2 = 0.0f, gradient2 = 0.0f;  // the greatest
     for (int n = 1; n < count; ++n) {
-        float offset2 = 0.0f, gradient2 = 0.0f;
-        for (std::size_t e = 0; e < CarrierFields::kComponents; ++e) {
-            const float d = fields.field[static_cast<std::size_t>(n)][e] - fields.field[0][e];
-            (e < 3 ? offset2 : gradient2) += d * d;
+        FieldFours d = fours(fields.field[static_cast<std::size_t>(n)]);
+        for (std::size_t c = 0; c < d.size(); ++c) {
+            d[c] -= own[c];
+            d[c] *= d[c];
         }
-        most = std::max(most, std::sqrt(offset2) + radius_m * std::sqrt(gradient2));
+        const Four rest = d[1] + d[2];
+        offset2 = std::max(offset2, d[0][0] + d[0][1] + d[0][2]);
+        gradient2 = std::max(gradient2, (d[0][3] + rest[0]) + (rest[1] + (rest[2] + rest[3])));
     }
-    return most;
+    return std::sqrt(offset2) + radius_m * std::sqrt(gradient2);
 }
 
 /// Half the longest diagonal of a cube of half edge `half_m` after the first carrier's deformation.
@@ -172,8 +159,8 @@ float bound_stretch(const CarrierFields& fields, float half_m) {
 
 /// Embeds the surface hexels of one phyxel and keeps those within reach.
 void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
-                const OccupancyShifts& shifts, const Rows& rows, const Capsules& capsules, std::int64_t phyxel,
-                const Int3& c, float reach_m) {
+                const OccupancyShifts& shifts, const OutwardRows& rows, const Capsules& capsules, std::int64_t phyxel,
+                const Int3& c) {
     const std::uint64_t surface = surface_hexels(model, work, shifts, phyxel);
     if (surface == 0) return;
     const Carriers carriers = find_carriers(model, state, work, phyxel);
@@ -185,7 +172,7 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
     const float half_m = half_hexel_m * static_cast<float>(shifts.m - 1);  // of the cube of the hexels' centres
     const float spread_m = bound_spread(fields, carriers.count, std::sqrt(3.0f) * half_m);
     const std::uint32_t which = capsules.within(centre_m + displacement_at(fields.field[0], Vec3f(0.0f)),
-                                                reach_m + spread_m + bound_stretch(fields, half_m));
+                                                spread_m + bound_stretch(fields, half_m));
     if (which == 0) return;
 
     for (std::uint64_t rest = surface; rest != 0; rest &= rest - 1) {
@@ -194,15 +181,15 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
         tissue::NearHexel item;
         item.rest_m = Vec3f(model.hexels.centre_m(cell));
         const Vec3f r = item.rest_m - centre_m;
-        if (capsules.distance(item.rest_m + displacement_at(fields.field[0], r), which) > reach_m + spread_m) continue;
+        if (capsules.beyond_reach(item.rest_m + displacement_at(fields.field[0], r), which) > spread_m) continue;
 
         const float* table = work.hexel_weight.data() + kNeighbourhood * bit;
         std::array<float, kNeighbourhood> weight;
         for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) weight[n] = table[carriers.cell[n]];
         const auto f = blend(fields, carriers.count, weight.data());
         item.world_m = item.rest_m + displacement_at(f, r);
+        if (capsules.beyond_reach(item.world_m, which) > 0.0f) continue;
         item.distance_m = capsules.distance(item.world_m);
-        if (item.distance_m > reach_m) continue;
         item.hexel = model.hexels.index(cell);
         item.bare_gap_m = capsules.bare_distance(item.world_m) - half_hexel_m;
         item.outward = turn_normal(deformation_gradient_of(f), rest_outward(model, state, rows, item.hexel));
@@ -213,25 +200,24 @@ void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::
 }  // namespace
 
 void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, Work& work,
-               double reach_m) {
+               const NearReach& reach) {
     exchange.near.clear();
     if (exchange.capsules.empty()) return;
     const OccupancyShifts shifts(model.hexels_per_edge);
-    const double phyxel_reach_m = reach_m + kPhyxelMargin * model.phyxels.spacing_m;
-    const Capsules capsules(exchange.capsules);
-    const Rows rows(model.hexels);
+    const Capsules capsules(exchange.capsules, reach);
+    const OutwardRows rows(model.hexels);
     PlaceView places;
     for (std::size_t r = 0; r < 3; ++r) {
         places.rest_m[r] = work.rest_m[r].data();
         places.displacement_m[r] = state.displacement_m[r].data();
     }
-    find_near_phyxels(places, work.groups, capsules, static_cast<float>(phyxel_reach_m), work.near_lanes);
+    find_near_phyxels(places, work.groups, capsules, static_cast<float>(kPhyxelMargin * model.phyxels.spacing_m),
+                      work.near_lanes);
     for (std::size_t g = 0; g < work.groups.size(); ++g) {
         const Group& group = work.groups[g];
         for (std::uint32_t rest = group.present & work.near_lanes[g]; rest != 0; rest &= rest - 1) {
             const std::int64_t phyxel = group.first + __builtin_ctz(rest);
-            add_hexels(model, state, exchange, work, shifts, rows, capsules, phyxel, model.phyxels.coordinates(phyxel),
-                       static_cast<float>(reach_m));
+            add_hexels(model, state, exchange, work, shifts, rows, capsules, phyxel, model.phyxels.coordinates(phyxel));
         }
     }
     std::sort(exchange.near.begin(), exchange.near.end(),

@@ -29,21 +29,23 @@ HWY_INLINE std::uint32_t bits_of(hn::Mask<D> mask) {
     return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
 }
 
-/// Lanes within the reach of a capsule: |p - a - t ab|^2 <= (radius + reach)^2 at the nearest t in [0, 1].
-HWY_INLINE hn::Mask<D> within(const CapsuleF& capsule, V px, V py, V pz, float reach_m) {
+/// Lanes at most `further_m` beyond a capsule's reach: |p - a - t ab|^2 <= (radius + reach)^2 at the nearest t in
+/// [0, 1].
+HWY_INLINE hn::Mask<D> within(const CapsuleF& capsule, V px, V py, V pz, float further_m) {
     const D d;
     const V x = hn::Sub(px, hn::Set(d, capsule.a.x)), y = hn::Sub(py, hn::Set(d, capsule.a.y)),
             z = hn::Sub(pz, hn::Set(d, capsule.a.z));
     V t = hn::Mul(dot(x, y, z, capsule.ab), hn::Set(d, capsule.inverse_length2));
     t = hn::Min(hn::Max(t, hn::Zero(d)), hn::Set(d, 1.0f));
-    const V dx = hn::Sub(x, hn::Mul(t, hn::Set(d, capsule.ab.x))), dy = hn::Sub(y, hn::Mul(t, hn::Set(d, capsule.ab.y))),
+    const V dx = hn::Sub(x, hn::Mul(t, hn::Set(d, capsule.ab.x))),
+            dy = hn::Sub(y, hn::Mul(t, hn::Set(d, capsule.ab.y))),
             dz = hn::Sub(z, hn::Mul(t, hn::Set(d, capsule.ab.z)));
     const V squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    const float most = capsule.radius + reach_m;
+    const float most = capsule.radius + (capsule.reach + further_m);
     return hn::Le(squared, hn::Set(d, most * most));
 }
 
-void near_phyxels(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float reach_m,
+void near_phyxels(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
                   const Vec3f& low, const Vec3f& high, std::uint16_t* near) {
     const D d;
     constexpr int kLanes = static_cast<int>(hn::MaxLanes(d));
@@ -60,7 +62,7 @@ void near_phyxels(const PlaceView& view, std::span<const Group> groups, const Ca
             inside = hn::And(inside, hn::And(hn::Ge(z, hn::Set(d, low.z)), hn::Le(z, hn::Set(d, high.z))));
             if (hn::AllFalse(d, inside)) continue;
             for (std::size_t k = 0; k < capsules.count; ++k)
-                bits |= bits_of(within(capsules.item[k], x, y, z, reach_m)) << lane;
+                bits |= bits_of(within(capsules.item[k], x, y, z, further_m)) << lane;
         }
         near[g] = static_cast<std::uint16_t>(bits);
     }
@@ -75,17 +77,17 @@ namespace calot::deformation {
 
 HWY_EXPORT(near_phyxels);
 
-void find_near_phyxels(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float reach_m,
+void find_near_phyxels(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
                        std::vector<std::uint16_t>& near) {
     Vec3f low(1e9f), high(-1e9f);
     for (std::size_t k = 0; k < capsules.count; ++k) {
         const CapsuleF& capsule = capsules.item[k];
-        const Vec3f b = capsule.a + capsule.ab, most(capsule.radius + reach_m);
+        const Vec3f b = capsule.a + capsule.ab, most(capsule.radius + (capsule.reach + further_m));
         low = glm::min(low, glm::min(capsule.a, b) - most);
         high = glm::max(high, glm::max(capsule.a, b) + most);
     }
     near.resize(groups.size());
-    HWY_DYNAMIC_DISPATCH(near_phyxels)(view, groups, capsules, reach_m, low, high, near.data());
+    HWY_DYNAMIC_DISPATCH(near_phyxels)(view, groups, capsules, further_m, low, high, near.data());
 }
 
 }  // namespace calot::deformation

@@ -34,6 +34,7 @@ class Reference {
         : model_(model),
           links_(state.links),
           mirrors_(work.mirrors),
+          face_m_(work.face_m),
           law_{model.deformation.law, static_cast<Real>(model.deformation.volume_stiffness_Pa)},
           displacement_m(static_cast<std::size_t>(model.phyxels.cells), Vec(0)),
           velocity_m_per_s(displacement_m),
@@ -57,8 +58,9 @@ class Reference {
 
     /// Displacements of ghosts from those of the phyxels, then G and M of all from displacements.
     void update_gradients() {
-        for (const Mirror& mirror : mirrors_) {
-            const Vec face(mirror.face_m[0], mirror.face_m[1], mirror.face_m[2]);
+        for (std::size_t n = 0; n < mirrors_.size(); ++n) {
+            const Mirror& mirror = mirrors_[n];
+            const Vec face(face_m_[0][n], face_m_[1][n], face_m_[2][n]);
             Vec sum(0);
             for (int k = 0; k < mirror.count; ++k) sum += displacement_m[mirrored(mirror, k)];
             displacement_m[static_cast<std::size_t>(mirror.ghost)] =
@@ -141,6 +143,7 @@ class Reference {
     const tissue::Model& model_;
     const std::array<BitArray, 9>& links_;
     const std::vector<Mirror>& mirrors_;
+    const std::array<std::vector<float>, 3>& face_m_;
     Law<Real> law_;
 
   public:

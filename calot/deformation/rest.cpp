@@ -71,20 +71,6 @@ Mat3 moment(const Model& model, const State& state, std::int64_t phyxel) {
     return a;
 }
 
-/// Trace of the moment matrix before anything was severed: all links between cells that were present, in units of s^2.
-double initial_trace(const Model& model, std::int64_t phyxel) {
-    double trace = 0.0;
-    const bool real = model.phyxel_initial.test(phyxel);
-    for (std::size_t d = 0; d < tissue::kLinkDirections.size(); ++d) {
-        const std::int64_t offset = model.phyxels.offset(tissue::kLinkDirections[d]);
-        // w |X|^2
-        const double term = static_cast<int>(d) < tissue::kFaceDirections ? kFaceWeight : 2.0 * kEdgeWeight;
-        for (const std::int64_t other : {phyxel + offset, phyxel - offset})
-            if (model.phyxel_initial.test(other) || (real && model.phyxel_ghost.test(other))) trace += term;
-    }
-    return trace;
-}
-
 /// Volume, mass and constants of a phyxel, volume not yet scaled.
 void fill_from_hexels(const Model& model, const Work& work, std::int64_t phyxel, PhyxelRest& rest) {
     const Content content = content_of(model, work, phyxel);
@@ -111,6 +97,19 @@ double surface_factor(double trace, double fill) {
 }
 
 }  // namespace
+
+double initial_trace(const Model& model, std::int64_t phyxel) {
+    double trace = 0.0;
+    const bool real = model.phyxel_initial.test(phyxel);
+    for (std::size_t d = 0; d < tissue::kLinkDirections.size(); ++d) {
+        const std::int64_t offset = model.phyxels.offset(tissue::kLinkDirections[d]);
+        // w |X|^2
+        const double term = static_cast<int>(d) < tissue::kFaceDirections ? kFaceWeight : 2.0 * kEdgeWeight;
+        for (const std::int64_t other : {phyxel + offset, phyxel - offset})
+            if (model.phyxel_initial.test(other) || (real && model.phyxel_ghost.test(other))) trace += term;
+    }
+    return trace;
+}
 
 Array<float> volume_shares(const Model& model) {
     const int m = model.hexels_per_edge;
@@ -192,14 +191,19 @@ void store_links(const Model& model, const State& state, Work& work, std::int64_
     refresh_group(model, state, group_of(work, phyxel));
 }
 
+void store_moment(Work& work, std::int64_t phyxel, const PhyxelRest& rest) {
+    const Mat3& inverse = rest.moment_inverse_per_m2;
+    const std::array<double, 6> upper{inverse[0][0], inverse[1][0], inverse[2][0],
+                                      inverse[1][1], inverse[2][1], inverse[2][2]};
+    for (std::size_t k = 0; k < upper.size(); ++k)
+        work.moment_inverse[k][static_cast<std::size_t>(phyxel)] = static_cast<float>(upper[k]);
+}
+
 /// Stores what depends on one cell alone, and on which phyxels a ghost mirrors.
 void store_rest(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
     const auto cell = static_cast<std::size_t>(phyxel);
     const PhyxelRest rest = phyxel_rest(model, state, work, phyxel);
-    const Mat3& inverse = rest.moment_inverse_per_m2;
-    const std::array<double, 6> upper{inverse[0][0], inverse[1][0], inverse[2][0],
-                                      inverse[1][1], inverse[2][1], inverse[2][2]};
-    for (std::size_t k = 0; k < upper.size(); ++k) work.moment_inverse[k][cell] = static_cast<float>(upper[k]);
+    store_moment(work, phyxel, rest);
     work.volume_m3[cell] = static_cast<float>(rest.volume_m3);
     work.hourglass[cell] = static_cast<float>(rest.hourglass_N_per_m);
     work.lame_mu_Pa[cell] = static_cast<float>(rest.mu_Pa);
@@ -207,7 +211,7 @@ void store_rest(const Model& model, const State& state, Work& work, std::int64_t
     store_links(model, state, work, phyxel);
     refresh_pull(model, state, work, phyxel);
     if (model.phyxel_ghost.test(phyxel)) refresh_mirror(model, state, work, phyxel);
-    if (upper[0] == 0.0) {
+    if (rest.moment_inverse_per_m2[0][0] == 0.0) {
         for (auto& component : work.gradient) component[cell] = 0.0f;
         for (auto& component : work.moment_stress) component[cell] = 0.0f;
         for (auto& component : work.own_force_N) component[cell] = 0.0f;
@@ -233,18 +237,63 @@ void for_each_neighbour_cell(const Lattice& phyxels, std::int64_t phyxel, const 
 
 }  // namespace
 
-void refresh_phyxel(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
-    store_rest(model, state, work, phyxel);
-    for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
-        if (model.phyxel_ghost.test(other)) store_rest(model, state, work, other);
-    });
-    store_mass(model, state, work, phyxel);
-    for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
-        if (state.phyxel_present.test(other)) store_mass(model, state, work, other);
-        if (!model.phyxel_ghost.test(other)) return;
-        const Mirror& mirror = find_mirror(work, other);
-        for (int k = 0; k < mirror.count; ++k)
-            store_mass(model, state, work, mirror.phyxel[static_cast<std::size_t>(k)]);
+namespace {
+
+/// Cells, each once however often it is noted. Work::search_stack is free here, Work::changed clear.
+struct Noted {
+    Work& work;
+    std::size_t count = 0;
+
+    void note(std::int64_t cell) {
+        if (work.changed.test(cell)) return;
+        work.changed.set(cell);
+        work.search_stack[count++] = cell;
+    }
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (std::size_t k = 0; k < count; ++k) {
+            work.changed.clear(work.search_stack[k]);
+            visit(work.search_stack[k]);
+        }
+    }
+};
+
+/// Calls visit(cell) for phyxels that changed and the ghosts beside them.
+template <class Visit>
+void for_each_with_ghosts(const Model& model, Work& work, std::span<const std::int64_t> phyxels, const Visit& visit) {
+    Noted noted{work};
+    for (const std::int64_t phyxel : phyxels) {
+        noted.note(phyxel);
+        for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
+            if (model.phyxel_ghost.test(other)) noted.note(other);
+        });
+    }
+    noted.for_each(visit);
+}
+
+}  // namespace
+
+void refresh_phyxels(const Model& model, const State& state, Work& work, std::span<const std::int64_t> phyxels) {
+    for_each_with_ghosts(model, work, phyxels, [&](std::int64_t cell) { store_rest(model, state, work, cell); });
+    // Masses depend on the rest properties of neighbours.
+    Noted noted{work};
+    for (const std::int64_t phyxel : phyxels) {
+        noted.note(phyxel);
+        for_each_neighbour_cell(model.phyxels, phyxel, [&](std::int64_t other) {
+            if (state.phyxel_present.test(other)) noted.note(other);
+            if (!model.phyxel_ghost.test(other)) return;
+            const Mirror& mirror = find_mirror(work, other);
+            for (int k = 0; k < mirror.count; ++k) noted.note(mirror.phyxel[static_cast<std::size_t>(k)]);
+        });
+    }
+    noted.for_each([&](std::int64_t cell) { store_mass(model, state, work, cell); });
+}
+
+void refresh_shapes(const Model& model, const State& state, Work& work, std::span<const std::int64_t> phyxels) {
+    for_each_with_ghosts(model, work, phyxels, [&](std::int64_t cell) {
+        store_moment(work, cell, phyxel_rest(model, state, work, cell));
+        store_links(model, state, work, cell);
+        if (model.phyxel_ghost.test(cell)) refresh_mirror(model, state, work, cell);
     });
 }
 

@@ -213,7 +213,7 @@ struct Severing {
 
 }  // namespace
 
-void sever_burnt_links(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work) {
+void sever_links(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work) {
     exchange.changed_phyxels.clear();
     if (exchange.removed_hexels.empty()) return;
     if (work.search > 0xf0000000u) {  // after some ten hours of cutting
@@ -232,10 +232,13 @@ void sever_burnt_links(const tissue::Model& model, tissue::State& state, tissue:
             severing.free_all_but_largest();
     }
     std::sort(exchange.changed_phyxels.begin(), exchange.changed_phyxels.end());
-    for (std::int64_t phyxel : exchange.changed_phyxels) {
-        work.changed.clear(phyxel);
-        refresh_phyxel(model, state, work, phyxel);
-    }
+    for (const std::int64_t phyxel : exchange.changed_phyxels) work.changed.clear(phyxel);
+}
+
+void sever_burnt_links(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work) {
+    sever_links(model, state, exchange, work);
+    if (exchange.changed_phyxels.empty()) return;
+    refresh_phyxels(model, state, work, exchange.changed_phyxels);
     update_gradients_about(model, state, work, exchange.changed_phyxels);
 }
 

@@ -20,6 +20,9 @@ namespace calot::deformation {
 /// what changed and lists it in Exchange::changed_phyxels, in the order of cells. Nothing is allocated.
 void sever_burnt_links(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
 
+/// The first part of it: all but what is refreshed, for whoever keeps rest properties elsewhere.
+void sever_links(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work);
+
 /// Before the first step: brings a fresh State to where the rules above hold, severing links that the anatomy itself
 /// does not carry (lobes in neighbouring cells that do not touch) and dropping crumbs. Not counted as severed or
 /// fallen. Returns the hexels dropped. The same rules over the whole lattice: the reference of sever_burnt_links.

@@ -18,7 +18,17 @@ struct Mirror {
     std::int32_t ghost = 0;
     std::int32_t count = 0;
     std::array<std::int32_t, 12> phyxel{};
-    std::array<float, 3> face_m{};  ///< displacement of the held face; 0 unless somebody moves the organ
+};
+
+/// The same as flat lists, for loops over all of them. Ghost n, ghost[n], mirrors phyxels mirrored[start[n]] to
+/// mirrored[start[n + 1]]; the other way, phyxel n, phyxel[n], is mirrored by ghosts by[first[n]] to by[first[n + 1]], of
+/// whose impulses it gets `share`.
+struct Images {
+    std::vector<std::int32_t> ghost, start, mirrored;
+    std::vector<std::int32_t> phyxel, first, by;
+    std::vector<float> share;
+    std::vector<std::int32_t> slot;  ///< [phyxels.cells] scratch, -1
+    bool stale = true;               ///< a mirror has changed since
 };
 
 /// Cells of a group: the widest vector. Narrower ones take a group in parts.
@@ -29,13 +39,13 @@ struct Group {
     std::int32_t first = 0;  ///< cell
     std::uint16_t present = 0, ghost = 0;
     std::uint16_t touched = 0;                     ///< scratch of update_gradients_about, 0 between calls
-    std::uint16_t overstretched = 0, stiffened = 0;  ///< as gradient is: beyond Model's tear_stretch; see stiffening
+    std::uint16_t overstretched = 0, stiffened = 0;  ///< as gradient is: beyond Model's tear_stretch, or no number; see stiffening
     std::array<std::uint16_t, 9> plus{}, minus{};  ///< links towards +d and -d
 };
 
 /// [phyxels.cells] each. Cells without a phyxel hold zeros. Ghosts have moments and gradients, but no volume or mass.
 struct Work {
-    // Rest properties, recomputed for a phyxel whenever its hexels or links change (refresh_phyxel)
+    // Rest properties, recomputed for a phyxel whenever its hexels or links change (refresh_phyxels)
     Array<std::uint64_t>
         occupancy;  ///< surviving hexels of the main component; bit x + m (y + m z), local coordinates; 0 for ghosts
     std::array<Array<float>, 6> moment_inverse;  ///< A^-1 [1/m^2], symmetric: xx xy xz yy yz zz; zero = no own stress
@@ -51,6 +61,8 @@ struct Work {
     std::array<Array<float>, 3> step_sum;        ///< sum w X_ij / s over live links
     Array<std::uint32_t> link_word;  ///< live links: bit k towards cell k of the neighbourhood (neighbours.h)
     std::vector<Mirror> mirrors;     ///< of all ghosts, in the order of their cells
+    Images images;                   ///< of them
+    std::array<std::vector<float>, 3> face_m;  ///< [mirrors] displacement of held faces; 0 unless somebody moves an organ
 
     // Of a tick: stable_mass.h says why masses depend on how tissue is deformed
     Array<float> inverse_mass_per_kg;  ///< of the mass that moves, 0 = absent or ghost

@@ -99,9 +99,9 @@ void Bleeding::seal(const tissue::Model& model, const tissue::State& state) {
         if (breach.opening <= 0.0f) continue;
         const Int3 cell = lattice.coordinates(breach.hexel);
         int hot = 0, present = 0;
-        for (int z = -2; z <= 2; ++z)
-            for (int y = -2; y <= 2; ++y)
-                for (int x = -2; x <= 2; ++x) {
+        for (int z = -kSealReach; z <= kSealReach; ++z)
+            for (int y = -kSealReach; y <= kSealReach; ++y)
+                for (int x = -kSealReach; x <= kSealReach; ++x) {
                     const Int3 at = cell + Int3(x, y, z);
                     if (!lattice.contains(at)) continue;
                     const std::int64_t hexel = lattice.index(at);

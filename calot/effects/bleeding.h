@@ -41,6 +41,8 @@ class Bleeding {
     const std::vector<BloodDrop>& drops() const { return drops_; }
     /// Thickness of the film on surface hexels [m], [hexels.cells]; empty where the scene has no artery.
     const Array<float>& film_m() const { return film_m_; }
+    /// Holes, closed ones too: step() looks at the temperatures within kSealReach hexels of them.
+    const std::vector<Breach>& breaches() const { return breaches_; }
     double flow_m3_per_s() const { return flow_m3_per_s_; }  ///< of all breaches now
     double lost_m3() const { return lost_m3_; }              ///< since the start
 
@@ -48,6 +50,7 @@ class Bleeding {
     /// fit.
     void archive(Archive& archive);
 
+    static constexpr int kSealReach = 2;
     static constexpr std::size_t kMostDrops = 768;
     static constexpr std::size_t kMostWet = 12000;  ///< hexels with a film
     static constexpr std::size_t kMostBreaches = 32;

@@ -17,6 +17,11 @@ double offered_peak_V(const tissue::Model& model, const tissue::State& state, co
     return voltage_limit_V(model.electric, input.mode) * crest_factor(model.electric, input.mode);
 }
 
+double bare_reach_m(const tissue::Model& model, const tissue::State& state, const tissue::Input& input) {
+    const double arcs_m = arc_reach_m(model.electric, offered_peak_V(model, state, input));
+    return std::max(model.electric.contact_gap_m, arcs_m) + 0.5 * model.hexels.spacing_m;
+}
+
 Reach find_reach(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
                  const tissue::Input& input) {
     const tissue::ElectricParameters& parameters = model.electric;

@@ -14,9 +14,9 @@
 // goes for what is nearest. Tissue that has dried at the metal is burnt through by arcs: there, conductivity is at
 // least that of a hexel full of arcs. An arc's resistance is chosen: some hundred volts at some tenths of an ampere.
 //
-// An arc heats both its ends. Electrosurgical arcs are glow discharges of 1 kA/cm2 in a column of 1 to 2 S/cm (Sci. Rep.
-// 2015, doi 10.1038/srep09946), so that the column takes some 15 to 30 V over 0.3 mm; nearly all the rest falls before
-// whichever end is the cathode, by turns. So the wire takes half, as long as the gap is short (arc_wire_share).
+// An arc heats both its ends. Electrosurgical arcs are glow discharges of 1 kA/cm2 in a column of 1 to 2 S/cm (Sci.
+// Rep. 2015, doi 10.1038/srep09946), so that the column takes some 15 to 30 V over 0.3 mm; nearly all the rest falls
+// before whichever end is the cathode, by turns. So the wire takes half, as long as the gap is short (arc_wire_share).
 
 #include <cstdint>
 #include <vector>
@@ -45,6 +45,9 @@ double arc_reach_m(const tissue::ElectricParameters& parameters, double peak_vol
 
 /// Peak voltage that the generator offers now: its limit when nothing flows, else the present one; 0 without pedal.
 double offered_peak_V(const tissue::Model& model, const tissue::State& state, const tissue::Input& input);
+
+/// How far from the surface of bare metal hexels can be that current enters, or that it could within this tick [m].
+double bare_reach_m(const tissue::Model& model, const tissue::State& state, const tissue::Input& input);
 
 /// What current enters at present: the bare gap up to which hexels count, and whether arcs burn.
 struct Reach {

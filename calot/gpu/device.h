@@ -29,6 +29,7 @@ struct DeviceInfo {
     std::uint64_t most_buffer_bytes = 0;  ///< of one buffer
     int compute_units = 0;
     bool is_gpu = false;
+    bool has_double = true;       ///< computes in double precision; kernels use it for little
     int platform = 0, index = 0;  ///< in the driver's lists
 };
 

@@ -149,6 +149,7 @@ class OpenClDevice final : public Device {
         // Division and roots as IEEE 754 has them, where the device can: results are then those of the CPU.
         const auto floats = number<cl_device_fp_config>(device_, CL_DEVICE_SINGLE_FP_CONFIG);
         if ((floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0) options_ = "-cl-fp32-correctly-rounded-divide-sqrt";
+        if (info_.has_double) options_ += " -DCALOT_DOUBLE";
     }
     ~OpenClDevice() override { clFinish(queue_.it); }
 
@@ -334,6 +335,7 @@ std::vector<DeviceInfo> opencl_devices() {
             info.most_buffer_bytes = number<cl_ulong>(some[d], CL_DEVICE_MAX_MEM_ALLOC_SIZE);
             info.compute_units = static_cast<int>(number<cl_uint>(some[d], CL_DEVICE_MAX_COMPUTE_UNITS));
             info.is_gpu = (number<cl_device_type>(some[d], CL_DEVICE_TYPE) & CL_DEVICE_TYPE_GPU) != 0;
+            info.has_double = number<cl_device_fp_config>(some[d], CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
             info.platform = static_cast<int>(p);
             info.index = static_cast<int>(d);
         }

@@ -31,6 +31,12 @@ double speed(const tissue::Capsule& c) {
     return std::fmax(glm::length(c.velocity_a_m_per_s), glm::length(c.velocity_b_m_per_s));
 }
 
+double margin_m(const tissue::Model& model, const tissue::Exchange& exchange) {
+    double fastest = 0.0;
+    for (const tissue::Capsule& c : exchange.capsules) fastest = std::fmax(fastest, speed(c));
+    return kMargin_m + fastest * model.tick_s;
+}
+
 bool overlap(const Box& a, const Box& b) {
     return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
 }
@@ -118,21 +124,24 @@ Touch touch(const tissue::Capsule& capsule, double dt_s, const tissue::NearHexel
     return result;
 }
 
+double contact_reach_m(const tissue::Model& model, const tissue::Exchange& exchange) {
+    return 0.5 * model.hexels.spacing_m + 2.0 * margin_m(model, exchange);  // moved by one tick
+}
+
 void find_contacts(const tissue::Model& model, const tissue::State&, tissue::Exchange& exchange) {
     exchange.contacts.clear();
     const double point_radius_m = 0.5 * model.hexels.spacing_m;
-    double fastest = 0.0;
-    for (const tissue::Capsule& c : exchange.capsules) fastest = std::fmax(fastest, speed(c));
-    const auto margin_m = static_cast<float>(kMargin_m + fastest * model.tick_s);
+    const auto margin = static_cast<float>(margin_m(model, exchange)),
+               reach_m = static_cast<float>(contact_reach_m(model, exchange));
     for (std::size_t k = 0; k < exchange.near.size(); ++k) {
         const tissue::NearHexel& hexel = exchange.near[k];
-        if (hexel.distance_m > static_cast<float>(point_radius_m) + 2.0f * margin_m) continue;  // moved by one tick
+        if (hexel.distance_m > reach_m) continue;
         Touch first, second;
         bool has_first = false, has_second = false;
         for (const tissue::Capsule& capsule : exchange.capsules) {
             if (!capsule.solid) continue;
             const Touch found = touch(capsule, model.tick_s, hexel, point_radius_m);
-            if (found.gap_m > margin_m) continue;
+            if (found.gap_m > margin) continue;
             if (!has_first || found.gap_m < first.gap_m) {
                 second = first;
                 has_second = has_first;

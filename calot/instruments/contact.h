@@ -33,6 +33,10 @@ inline constexpr double kOrganStiffness_N_per_m = 1000.0;
 /// the greatest depth found at points along the capsules, along the gradient of its distance.
 void find_contacts(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange);
 
+/// Hexels further than this from every instrument make no contact in this tick: half a hexel, what the fastest moves,
+/// and a margin.
+double contact_reach_m(const tissue::Model& model, const tissue::Exchange& exchange);
+
 /// How a capsule touches a point of radius `point_radius_m` at the start of the tick.
 struct Touch {
     Vec3f normal{0.0f};  ///< unit, out of the capsule

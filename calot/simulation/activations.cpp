@@ -24,7 +24,7 @@ std::vector<Int3> edge_of(const Simulation& run, const BitArray& removed) {
     for_bits(removed, [&](std::int64_t hexel) {
         bool beside = false;
         for (const int step : {lattice.stride.x, lattice.stride.y, lattice.stride.z})
-            beside |= run.state().hexel_present.test(hexel - step) || run.state().hexel_present.test(hexel + step);
+            beside |= run.figures().hexel_present.test(hexel - step) || run.figures().hexel_present.test(hexel + step);
         if (beside) cells.push_back(lattice.coordinates(hexel));
     });
     return cells;
@@ -53,9 +53,9 @@ ActivationWatch::ActivationWatch(const tissue::Model& model)
 
 void ActivationWatch::look(const Simulation& run, const tissue::Input& input) {
     if (input.pedal && !down_) begin(run, input);
-    last_energy_J_ = run.state().energy_J.delivered;
+    last_energy_J_ = run.figures().energy_J.delivered;
     if (!input.pedal && down_) release(run);
-    const tissue::Exchange& exchange = run.work().exchange;
+    const tissue::Exchange& exchange = run.exchange();
     if (!pending_) {
         for (const std::int64_t hexel : exchange.removed_hexels) gone_.set(hexel);
         return;
@@ -92,8 +92,8 @@ void ActivationWatch::begin(const Simulation& run, const tissue::Input& input) {
 void ActivationWatch::release(const Simulation& run) {
     Activation& now = activations_.back();
     now.stop_s = run.time_s() - run.model().tick_s;
-    now.energy_J = run.state().energy_J.delivered - energy_before_J_;
-    now.tip_temperature_K = run.state().tip.temperature_K;
+    now.energy_J = run.figures().energy_J.delivered - energy_before_J_;
+    now.tip_temperature_K = run.figures().tip.temperature_K;
     down_ = false;
 }
 

@@ -270,7 +270,7 @@ RecordingWriter::~RecordingWriter() = default;
 
 void RecordingWriter::add(const tissue::Input& input, const tissue::State& state) {
     pending_.push_back(input);
-    if (state.tick % ticks_per_chunk_ == 0) flush(state);
+    if (hashes_at(state.tick)) flush(state);
 }
 
 void RecordingWriter::flush() {

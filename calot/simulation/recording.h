@@ -43,6 +43,8 @@ class RecordingWriter {
     /// Once a tick, after Simulation::tick(input). Writes and flushes a chunk whenever State::tick is a multiple of a
     /// second's ticks.
     void add(const tissue::Input& input, const tissue::State& state);
+    /// Whether add() reads the state after this tick.
+    bool hashes_at(std::int64_t tick) const { return tick % ticks_per_chunk_ == 0; }
     /// Writes what is left, a last hash record and the end mark.
     void finish(const tissue::State& state);
 

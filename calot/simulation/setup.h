@@ -2,6 +2,8 @@
 // Everything that a run starts from. scene::build makes one from a scene file; a program may as well fill it by hand.
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "calot/anatomy/anatomy.h"
@@ -12,6 +14,8 @@
 #include "calot/tissue/model.h"
 
 namespace calot::simulation {
+
+class Backend;
 
 /// Where the laparoscope looks from.
 struct CameraSetup {
@@ -33,6 +37,8 @@ struct Setup {
     effects::SmokeParameters smoke;
     CameraSetup camera;
     Script script;
+    /// Makes who computes the ticks of a Simulation (backend.h); empty: the processor does. May throw BackendError.
+    std::function<std::unique_ptr<Backend>(const Setup&)> backend;
 };
 
 }  // namespace calot::simulation

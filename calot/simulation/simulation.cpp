@@ -56,28 +56,131 @@ Work::Work(const tissue::Model& model, const tissue::State& state, const instrum
 Simulation::Simulation(std::shared_ptr<const Setup> setup)
     : setup_(std::move(setup)),
       state_(make_initial_state(setup_->model)),
-      work_(setup_->model, state_, setup_->hook, setup_->smoke, setup_->grasper) {}
+      work_(setup_->model, state_, setup_->hook, setup_->smoke, setup_->grasper),
+      backend_(cpu_backend()) {
+    start_backend();
+}
 
 Simulation::Simulation(std::shared_ptr<const Setup> setup, tissue::State state)
     : setup_(std::move(setup)),
       state_(checked(setup_->model, std::move(state))),
-      work_(setup_->model, state_, setup_->hook, setup_->smoke, setup_->grasper) {}
+      work_(setup_->model, state_, setup_->hook, setup_->smoke, setup_->grasper),
+      backend_(cpu_backend()) {
+    start_backend();
+}
 
 bool Simulation::tick(const tissue::Input& input) {
     if (!state_.status.ok) return false;
-    step(setup_->model, state_, work_, input);
+    if (kept_)
+        tick_with_backend(input);
+    else
+        backend_->step(setup_->model, state_, work_, input);
     return state_.status.ok;
+}
+
+void Simulation::start_backend() {
+    if (!setup_->backend) return;
+    try {
+        std::unique_ptr<Backend> other = setup_->backend(*setup_);
+        other->begin(setup_->model, state_, work_);
+        backend_ = std::move(other);
+    } catch (const BackendError& error) {
+        notices_.push_back(std::string("the processor computes: ") + error.what());
+        return;
+    }
+    if (backend_->keeps_host_current()) return;
+    kept_.emplace();
+    kept_->inputs.reserve(kKeptTicks);
+    keep();
+}
+
+void Simulation::keep() {
+    kept_->state = state_;
+    kept_->inputs.clear();
+    keep_effects();
+}
+
+void Simulation::keep_effects() {
+    Archive effects;
+    work_.smoke.archive(effects);
+    work_.bleeding.archive(effects);
+    kept_->effects = effects.bytes();
+}
+
+void Simulation::tick_with_backend(const tissue::Input& input) {
+    kept_->inputs.push_back(input);
+    state_lags_ = surface_lags_ = true;
+    try {
+        backend_->step(setup_->model, state_, work_, input);
+    } catch (const BackendError& error) {
+        fall_back(error.what());
+        return;
+    }
+    if (state_.tick % kKeptTicks != 0 || !state_.status.ok) return;
+    fetch_state();
+    if (kept_) keep();
+}
+
+void Simulation::fetch_state() const {
+    try {
+        backend_->fetch_state(setup_->model, state_, work_);
+        state_lags_ = false;
+    } catch (const BackendError& error) {
+        fall_back(error.what());
+    }
+}
+
+void Simulation::fetch_surface() const {
+    try {
+        backend_->fetch_surface(setup_->model, state_, work_);
+        surface_lags_ = false;
+    } catch (const BackendError& error) {
+        fall_back(error.what());
+    }
+}
+
+/// The processor takes over: from the state that was kept on, once more through the ticks since.
+void Simulation::fall_back(const std::string& why) const {
+    const Kept kept = *std::move(kept_);
+    notices_.push_back(backend_->name() + " failed at tick " +
+                       std::to_string(kept.state.tick + static_cast<std::int64_t>(kept.inputs.size())) + " (" + why +
+                       "); the processor goes on, from tick " + std::to_string(kept.state.tick));
+    backend_ = cpu_backend();
+    kept_.reset();
+    state_lags_ = surface_lags_ = false;
+    state_ = kept.state;
+    surface::Surface surface = std::move(work_.surface);  // goes on counting its versions
+    work_ = Work(setup_->model, state_, setup_->hook, setup_->smoke, setup_->grasper);
+    work_.surface = std::move(surface);
+    work_.surface.rebuild(setup_->model, state_);
+    Archive effects(kept.effects);
+    work_.smoke.archive(effects);
+    work_.bleeding.archive(effects);
+    vertices_.surface_version = ~std::uint64_t{0};
+    for (const tissue::Input& input : kept.inputs)
+        if (state_.status.ok) step(setup_->model, state_, work_, input);
 }
 
 void Simulation::archive_effects(Archive& archive) {
     work_.smoke.archive(archive);
     work_.bleeding.archive(archive);
+    if (archive.reading() && kept_) keep_effects();
 }
 
 void Simulation::world_surface(WorldSurface& out) const {
-    const surface::Mesh& mesh = work_.surface.smooth_mesh();
+    const surface::Mesh& mesh = surface().smooth_mesh();
     out.position_m.resize(mesh.position_m.size());
     out.deformation_gradient.resize(mesh.position_m.size());
+    if (kept_) {
+        try {
+            backend_->embed_surface(work_, out.position_m, out.deformation_gradient);
+            return;
+        } catch (const BackendError& error) {
+            fall_back(error.what());
+            world_surface(out);
+            return;
+        }
+    }
     // While the surface changes from frame to frame, keeping weights does not pay.
     const bool changed =
         vertices_.surface_version != work_.surface.version() || vertices_.links_severed != state_.links_severed;
@@ -97,7 +200,7 @@ void Simulation::world_surface(WorldSurface& out) const {
 double Simulation::energy_imbalance() const {
     const tissue::EnergyBudget& energy = state_.energy_J;
     if (energy.delivered == 0.0) return 0.0;
-    return (energy.delivered - energy.accounted() - thermal::stored_J(setup_->model, state_)) / energy.delivered;
+    return (energy.delivered - energy.accounted() - thermal::stored_J(setup_->model, state())) / energy.delivered;
 }
 
 }  // namespace calot::simulation

@@ -5,12 +5,15 @@
 //     simulation::Simulation run(setup);
 //     while (run.time_s() < setup->duration_s) run.tick(setup->script.at(run.time_s()));
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calot/deformation/embedded_points.h"
+#include "calot/simulation/backend.h"
 #include "calot/simulation/setup.h"
 #include "calot/simulation/step.h"
 
@@ -22,6 +25,8 @@ struct WorldSurface {
     std::vector<Mat3f> deformation_gradient;  ///< turns rest normals by its inverse transpose
 };
 
+/// A backend other than the processor's may keep the large arrays to itself. state(), work(), surface() and
+/// world_surface() then wait for them; figures(), exchange() and the like never do. Not for several threads at once.
 class Simulation {
   public:
     explicit Simulation(std::shared_ptr<const Setup> setup);
@@ -42,12 +47,34 @@ class Simulation {
     double time_s() const { return static_cast<double>(state_.tick) * setup_->model.tick_s; }
     const Setup& setup() const { return *setup_; }
     const tissue::Model& model() const { return setup_->model; }
-    const tissue::State& state() const { return state_; }
-    const Work& work() const { return work_; }
-    const surface::Surface& surface() const { return work_.surface; }
-    const std::vector<tissue::Capsule>& capsules() const { return work_.exchange.capsules; }
+    const tissue::State& state() const {
+        if (state_lags_) fetch_state();
+        return state_;
+    }
+    const Work& work() const {
+        if (state_lags_) fetch_state();
+        if (surface_lags_) fetch_surface();
+        return work_;
+    }
+    const surface::Surface& surface() const {
+        if (surface_lags_) fetch_surface();
+        return work_.surface;
+    }
 
-    /// World positions and deformation gradients of Surface::smooth_mesh()'s vertices. Not for several threads at once.
+    /// The state without its arrays, of which only State::hexel_present is sure to be of now.
+    const tissue::State& figures() const { return state_; }
+    const tissue::Exchange& exchange() const { return work_.exchange; }
+    const std::vector<tissue::Capsule>& capsules() const { return work_.exchange.capsules; }
+    const effects::Smoke& smoke() const { return work_.smoke; }
+    const effects::Bleeding& bleeding() const { return work_.bleeding; }
+    const std::array<float, kStages>& stage_us() const { return work_.stage_us; }
+
+    /// Who computes the ticks.
+    const Backend& backend() const { return *backend_; }
+    /// What became of the backend that was asked for, if it failed: for people.
+    const std::vector<std::string>& notices() const { return notices_; }
+
+    /// World positions and deformation gradients of Surface::smooth_mesh()'s vertices.
     void world_surface(WorldSurface& out) const;
 
     /// delivered - (outflow + gas + surface + perfusion + debris + tip + stored), as a fraction of delivered (0 when
@@ -55,9 +82,31 @@ class Simulation {
     double energy_imbalance() const;
 
   private:
+    /// Where to go on from when the backend fails: a complete state, and the inputs since.
+    struct Kept {
+        tissue::State state;
+        std::string effects;  ///< archive_effects()
+        std::vector<tissue::Input> inputs;
+    };
+    /// Ticks between such states. Their arrays have to come from the device; what has to be done again is at most this.
+    static constexpr std::int64_t kKeptTicks = 512;
+
+    void start_backend();
+    void keep();
+    void keep_effects();
+    void tick_with_backend(const tissue::Input& input);
+    void fetch_state() const;
+    void fetch_surface() const;
+    void fall_back(const std::string& why) const;
+
     std::shared_ptr<const Setup> setup_;
-    tissue::State state_;
-    Work work_;
+    // Mutable: looking at them may bring them up to date, and show that the backend is lost.
+    mutable tissue::State state_;
+    mutable Work work_;
+    mutable std::unique_ptr<Backend> backend_;
+    mutable std::optional<Kept> kept_;  ///< while the backend does not keep the host current
+    mutable bool state_lags_ = false, surface_lags_ = false;
+    mutable std::vector<std::string> notices_;
 
     // For world_surface: how vertices hang on phyxels, kept while neither surface nor links change.
     struct VertexCache {

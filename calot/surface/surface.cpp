@@ -85,6 +85,9 @@ Surface::Impl::Impl(const tissue::Model& model) : grid(model.hexels), spacing_m(
 
 void Surface::Impl::rebuild() {
     const std::int64_t blocks = grid.count();
+    for (const std::int32_t block : redo_blocks) redo[static_cast<std::size_t>(block)] = 0;
+    redo_blocks.clear();
+    removed.clear();
     parallel_for("surface.edges", 0, blocks, 16, [&](std::int64_t low, std::int64_t high) {
         for (std::int64_t block = low; block < high; ++block) grid.find_edges(block);
     });
@@ -133,6 +136,7 @@ void Surface::Impl::mark(const Int3& low, const Int3& high, std::uint8_t what) {
 
 /// One thread: some ten blocks of a few microseconds each, and tasks would be allocated.
 void Surface::Impl::redo_marked() {
+    if (redo_blocks.empty()) return;
     for (const std::int32_t block : redo_blocks)
         if (redo[static_cast<std::size_t>(block)] & kVertices) redo_vertices(block);
     for (const std::int32_t block : redo_blocks) {
@@ -248,6 +252,7 @@ void Surface::Impl::write_vertices(std::int64_t block, const ChangedPoints* chan
 
 void Surface::Impl::gather() {
     if (gathered) return;
+    redo_marked();
     std::uint32_t vertices = 0, triangles = 0;
     for (std::int64_t block = 0; block < grid.count(); ++block) {
         first_vertex[static_cast<std::size_t>(block)] = vertices;
@@ -295,7 +300,7 @@ void Surface::rebuild(const tissue::Model&, const tissue::State& state) {
     impl_->rebuild();
 }
 
-void Surface::update_dirty_blocks(const tissue::Model&, const tissue::State&, const tissue::Exchange& exchange) {
+void Surface::remove(const tissue::Exchange& exchange) {
     Impl& s = *impl_;
     for (const std::int64_t hexel : exchange.removed_hexels) {
         const Int3 p = s.grid.point_of(hexel);
@@ -306,11 +311,21 @@ void Surface::update_dirty_blocks(const tissue::Model&, const tissue::State&, co
         // all blocks that refer there. Vertices with an end of their edge within reach move.
         s.mark(p - 1 - kBlock, p, kTriangles);
         s.mark(p - kReach - 1, p + kReach, kVertices);
+        s.gathered = false;
+        ++s.version;
     }
-    if (s.redo_blocks.empty()) return;
-    s.redo_marked();
-    ++s.version;
-    s.gathered = false;
+}
+
+void Surface::redo_dirty_blocks() {
+    impl_->redo_marked();
+}
+
+void Surface::adopt(Mesh mesh, std::vector<std::int64_t> owner) {
+    impl_->mesh = std::move(mesh);
+    impl_->mesh_owner = std::move(owner);
+    impl_->gathered = true;
+    impl_->smoothed = false;
+    ++impl_->version;
 }
 
 const Mesh& Surface::rest_mesh() const {

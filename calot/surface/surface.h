@@ -23,8 +23,15 @@ class Surface {
 
     /// Rebuilds everything from State::hexel_present.
     void rebuild(const tissue::Model& model, const tissue::State& state);
-    /// Redoes the blocks near Exchange::removed_hexels. No allocation beyond the reserve made at set-up.
-    void update_dirty_blocks(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange);
+    /// Takes Exchange::removed_hexels away. The blocks near them are redone by redo_dirty_blocks(), or when the mesh is
+    /// asked for.
+    void remove(const tissue::Exchange& exchange);
+    /// Redoes the blocks near what was removed. No allocation beyond the reserve made at set-up.
+    void redo_dirty_blocks();
+
+    /// Takes over a mesh of State::hexel_present that somebody else made, with its owners. What comes next may be another
+    /// such mesh or rebuild(), not remove().
+    void adopt(Mesh mesh, std::vector<std::int64_t> owner);
 
     /// Rest mesh. Gathered from the blocks when something changed since the last call.
     const Mesh& rest_mesh() const;

@@ -66,7 +66,7 @@ void Meter::add_event(const Event& event) {
 }
 
 void Meter::after_tick(const simulation::Simulation& run, const tissue::Input& input) {
-    const std::int64_t tick = run.state().tick;
+    const std::int64_t tick = run.figures().tick;
     sums_.ticks = tick;
     move(input, tick);
     watch_pedal(run, input);
@@ -115,8 +115,8 @@ void Meter::watch_pedal(const simulation::Simulation& run, const tissue::Input& 
         ++s.pedal;
         ++s.pedal_now;
         s.pedal_longest = std::max(s.pedal_longest, s.pedal_now);
-        if (run.state().generator.current_A > 0.0) ++s.pedal_contact;
-        s.energy_J += run.state().generator.power_W * tick_s_;
+        if (run.figures().generator.current_A > 0.0) ++s.pedal_contact;
+        s.energy_J += run.figures().generator.power_W * tick_s_;
     } else if (s.pedal_now > 0) {
         s.pedal_now = 0;
         add_event({now_s, EventKind::activation_end, "", s.energy_J - s.energy_at_start_J});
@@ -125,20 +125,20 @@ void Meter::watch_pedal(const simulation::Simulation& run, const tissue::Input& 
 
 void Meter::watch_contact(const simulation::Simulation& run, const tissue::Input& input) {
     Sums& s = sums_;
-    const Vec3 force_N = run.state().hook_force_N;
+    const Vec3 force_N = run.figures().hook_force_N;
     const double size_N = glm::length(force_N);
     s.force_peak_N = std::max(s.force_peak_N, size_N);
     s.force_since_point_N = std::max(s.force_since_point_N, size_N);
     const double pull_N = -glm::dot(force_N, glm::normalize(trocar_m_ - input.hook.position_m));
     s.pull_peak_N = std::max(s.pull_peak_N, pull_N);
-    if (input.pedal && run.state().generator.current_A > 0.0 && pull_N >= kTraction_N) ++s.pedal_traction;
+    if (input.pedal && run.figures().generator.current_A > 0.0 && pull_N >= kTraction_N) ++s.pedal_traction;
     s.in_contact = size_N > 0.0;
     if (s.in_contact) {
         ++s.contact;
         s.gentle += size_N < kGentle_N;
     }
 
-    const tissue::Exchange& exchange = run.work().exchange;
+    const tissue::Exchange& exchange = run.exchange();
     std::array<bool, 2> touching{};
     for (const tissue::Contact& contact : exchange.contacts) {
         if (contact.gap_m > kTouchGap_m) continue;
@@ -154,7 +154,7 @@ void Meter::watch_contact(const simulation::Simulation& run, const tissue::Input
                        input.pedal ? 1.0 : 0.0});
         if (touching[which]) s.touched_at[which] = s.ticks;
     }
-    const bool hot = !input.pedal && run.state().tip.temperature_K >= kHotTip_K;
+    const bool hot = !input.pedal && run.figures().tip.temperature_K >= kHotTip_K;
     s.hot_touch += hot && (touching[0] || touching[1]);
 }
 
@@ -181,7 +181,7 @@ void Meter::watch_organs(const simulation::Simulation& run, const tissue::Input&
 }
 
 void Meter::watch_removal(const simulation::Simulation& run) {
-    for (std::int64_t hexel : run.work().exchange.removed_hexels) {
+    for (std::int64_t hexel : run.exchange().removed_hexels) {
         if (run.model().hexel_material[static_cast<std::size_t>(hexel)] != fat_) continue;
         ++sums_.fat_removed;
         sums_.between_removed += between_.test(hexel);
@@ -228,7 +228,7 @@ void Meter::look(const simulation::Simulation& run, std::size_t which) {
 }
 
 void Meter::heat(const simulation::Simulation& run) {
-    const tissue::StrayCurrent& stray = run.state().stray;
+    const tissue::StrayCurrent& stray = run.figures().stray;
     for (std::size_t which = 0; which < 2; ++which) {
         const std::size_t material = structures_[which].material();
         if (!structures_[which].exists() || material >= tissue::kStrayMaterials) continue;

@@ -39,7 +39,7 @@ void Recorder::after_tick(const simulation::Simulation& run, const tissue::Input
     }
     ring_[put % kRing] = input;
     put_.store(put + 1, std::memory_order_release);
-    const std::int64_t tick = run.state().tick;
+    const std::int64_t tick = run.figures().tick;
     if (tick % kTicksPerCheckpoint != 0 || !can_be_stored(run.model(), tick)) return;
     if (slot_.full.load(std::memory_order_acquire)) return;  // the disk is slow: this one is left out
     slot_.state = run.state();

@@ -71,12 +71,12 @@ Moment reach(const std::string& recording, std::int64_t tick, const Task* task,
     take_checkpoint(CheckpointReader(moment.checkpoints), tick, moment);
     std::optional<TaskWatch> watch;
     if (task != nullptr) watch.emplace(*task).restore(moment.meter->events());
-    while (moment.run->state().tick < tick) {
-        const tissue::Input& input = moment.recording->inputs[static_cast<std::size_t>(moment.run->state().tick)];
+    while (moment.run->figures().tick < tick) {
+        const tissue::Input& input = moment.recording->inputs[static_cast<std::size_t>(moment.run->figures().tick)];
         if (!moment.run->tick(input))
             throw InputError(recording, 0, 0, "the simulation stops before that moment", "choose an earlier one");
         moment.meter->after_tick(*moment.run, input);
-        if (watch) watch->after_tick(*moment.meter, moment.run->state().tick, moment.run->time_s());
+        if (watch) watch->after_tick(*moment.meter, moment.run->figures().tick, moment.run->time_s());
     }
     return moment;
 }
@@ -132,7 +132,7 @@ LiveSession::~LiveSession() = default;
 
 void LiveSession::after_tick(const simulation::Simulation& run, const tissue::Input& input) {
     meter_->after_tick(run, input);
-    const std::int64_t tick = run.state().tick;
+    const std::int64_t tick = run.figures().tick;
     if (watch_) {
         watch_->after_tick(*meter_, tick, run.time_s());
         if (tick % kTicksPerFigures == 0) {

@@ -92,6 +92,7 @@ inline void shake(Body& body, double amplitude, double angle_rad, std::uint64_t 
         const Vec3 noise(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         body.set_displacement(p, turn * x - x + amplitude * kSpacing_m * noise);
     });
+    refresh_images(body.work);
     move_ghosts(body.state, body.work);
     update_gradients(body.model, body.state, body.work);
 }

@@ -36,7 +36,8 @@ struct Body {
         tissue::Exchange exchange;
         exchange.removed_hexels = hexels;
         for (std::int64_t h : hexels) state.hexel_present.clear(h);
-        surface.update_dirty_blocks(model, state, exchange);
+        surface.remove(exchange);
+        surface.redo_dirty_blocks();
     }
 };
 

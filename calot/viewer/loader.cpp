@@ -5,11 +5,14 @@
 namespace calot::viewer {
 
 Loader::Loader(std::function<scene::Scene()> make_scene,
-               std::function<std::vector<std::shared_ptr<Observer>>(const simulation::Setup&)> make_observers)
-    : Loader([this, make_scene = std::move(make_scene), make_observers = std::move(make_observers)] {
+               std::function<std::vector<std::shared_ptr<Observer>>(const simulation::Setup&)> make_observers,
+               std::function<void(simulation::Setup&)> prepare)
+    : Loader([this, make_scene = std::move(make_scene), make_observers = std::move(make_observers),
+              prepare = std::move(prepare)] {
           const scene::Scene scene = make_scene();
           step_ = Step::anatomy;
-          auto setup = std::make_shared<const simulation::Setup>(scene::build(scene));
+          auto setup = std::make_shared<simulation::Setup>(scene::build(scene));
+          if (prepare) prepare(*setup);
           step_ = Step::tissue;
           Start start;
           start.run = std::make_unique<simulation::Simulation>(setup);

@@ -25,9 +25,10 @@ class Loader {
         std::vector<std::shared_ptr<Observer>> observers;
     };
 
-    /// Both run in the thread.
+    /// All run in the thread. `prepare` may change the setup before anything is made of it; it may be empty.
     Loader(std::function<scene::Scene()> make_scene,
-           std::function<std::vector<std::shared_ptr<Observer>>(const simulation::Setup&)> make_observers);
+           std::function<std::vector<std::shared_ptr<Observer>>(const simulation::Setup&)> make_observers,
+           std::function<void(simulation::Setup&)> prepare = {});
     /// The same for a run that there is already, somewhere: `make_start` runs in the thread.
     explicit Loader(std::function<Start()> make_start);
     ~Loader();

@@ -34,15 +34,15 @@ void Picture::begin(const simulation::Simulation& run, const tissue::Input& inpu
     view.organs = &organs_;
     view.instrument = run.capsules();
     view.energised = input.pedal;
-    view.smoke = run.work().smoke.particles();
-    view.drops = run.work().bleeding.drops();
+    view.smoke = run.smoke().particles();
+    view.drops = run.bleeding().drops();
 }
 
 bool Picture::go_on(const simulation::Simulation& run, std::size_t count, render::View& view) {
     const std::size_t end = std::min(rest_m_.size(), done_ + count);
     render::fill_tissue(
         run.model(), run.state(), run.work().thermal.temperature_K,
-        {rest_m_, rest_normal_, owner_, world_.position_m, world_.deformation_gradient, run.work().bleeding.film_m()},
+        {rest_m_, rest_normal_, owner_, world_.position_m, world_.deformation_gradient, run.bleeding().film_m()},
         done_, end, view.tissue);
     done_ = end;
     return done_ == rest_m_.size();

@@ -31,7 +31,7 @@ class Tape {
           picture_(*setup_) {}
 
     std::int64_t ticks() const { return static_cast<std::int64_t>(recording_.inputs.size()); }
-    std::int64_t tick() const { return run_->state().tick; }
+    std::int64_t tick() const { return run_->figures().tick; }
 
     /// A step of the way to `wish` (1 to ticks()): up to a checkpoint, or on by a frame. False when the run is there.
     bool approach(std::int64_t wish) {

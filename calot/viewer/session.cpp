@@ -124,7 +124,7 @@ void Session::work() {
         controls_.update();
         const Controls& controls = controls_.front();
         double now_s = steady_s();
-        if (controls.paused || !core_.run().state().status.ok) {
+        if (controls.paused || !core_.run().figures().status.ok) {
             paused = true;
             core_.rest();
             if (now_s >= picture_due_s) {

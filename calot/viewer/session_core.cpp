@@ -45,7 +45,7 @@ Theatre theatre_of(const simulation::Setup& setup) {
 
 Theatre theatre_of(const simulation::Simulation& run) {
     Theatre theatre = theatre_of(run.setup());
-    const tissue::State& state = run.state();
+    const tissue::State& state = run.figures();
     if (state.tick == 0) return theatre;
     theatre.right_start.tip_m = state.hook.position_m;
     theatre.right_start.roll_rad = haptics::roll_of(theatre.right.port_m, state.hook, run.setup().hook);
@@ -64,7 +64,7 @@ SessionCore::SessionCore(std::unique_ptr<simulation::Simulation> run, std::vecto
       theatre_(theatre_of(*run_)),
       right_(theatre_.right_start),
       left_(theatre_.left_start),
-      jaw_(run_->state().grasper.present != 0 ? run_->state().grasper.jaw : kJawOpen),
+      jaw_(run_->figures().grasper.present != 0 ? run_->figures().grasper.jaw : kJawOpen),
       picture_(run_->setup()) {
     input_.hook = right_.pose(theatre_.right.port_m, run_->setup().hook);
     for (const auto& observer : observers_) observer->begin(*run_);
@@ -78,11 +78,11 @@ void SessionCore::end() {
 tissue::Input SessionCore::input_for(const Controls& controls) {
     const double dt_s = run_->model().tick_s;
     right_.advance({within_reach(controls.right.tip_m, theatre_.right), controls.right.roll_rad, controls.right.closed},
-                   run_->state().hook_force_N, dt_s);
+                   run_->figures().hook_force_N, dt_s);
     tissue::Input input;
     input.hook = right_.pose(theatre_.right.port_m, run_->setup().hook);
     left_.advance({within_reach(controls.left.tip_m, theatre_.left), controls.left.roll_rad, controls.left.closed},
-                  run_->state().grasper.force_N, dt_s);
+                  run_->figures().grasper.force_N, dt_s);
     // Jaws take a moment to open and close, so that tissue is not hit by them.
     const double wanted = controls.left.closed ? 0.0 : kJawOpen;
     jaw_ += std::clamp(wanted - jaw_, -dt_s / kJawTime_s, dt_s / kJawTime_s);
@@ -116,9 +116,9 @@ bool SessionCore::tick(const Controls& controls) {
     input_ = input_for(controls);
     follow_device(controls);
     const bool ok = run_->tick(input_);
-    if (device_) device_->feel(run_->state());
+    if (device_) device_->feel(run_->figures());
     double gas_kg = 0.0;
-    for (const tissue::GasEvent& event : run_->work().exchange.gas)
+    for (const tissue::GasEvent& event : run_->exchange().gas)
         gas_kg += static_cast<double>(event.steam_kg) + static_cast<double>(event.smoke_kg);
     const double dt_s = run_->model().tick_s;
     boiling_kg_per_s_ += (gas_kg / dt_s - boiling_kg_per_s_) * dt_s / kBoilingTime_s;
@@ -134,7 +134,7 @@ void fill_snapshot(const simulation::Simulation& run, const tissue::Input& input
 
 void begin_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture,
                     Snapshot& snapshot) {
-    const tissue::State& state = run.state();
+    const tissue::State& state = run.figures();
     picture.begin(run, input, snapshot.view);
     snapshot.tick = state.tick;
     snapshot.time_s = run.time_s();
@@ -142,11 +142,11 @@ void begin_snapshot(const simulation::Simulation& run, const tissue::Input& inpu
     snapshot.input = input;
     snapshot.hook_force_N = state.hook_force_N;
     snapshot.tip_m = input.hook.position_m;
-    snapshot.bleeding_m3_per_s = run.work().bleeding.flow_m3_per_s();
-    snapshot.blood_lost_m3 = run.work().bleeding.lost_m3();
+    snapshot.bleeding_m3_per_s = run.bleeding().flow_m3_per_s();
+    snapshot.blood_lost_m3 = run.bleeding().lost_m3();
     snapshot.status = state.status;
     snapshot.hottest_K = 310.15f;
-    for (const tissue::NearHexel& near : run.work().exchange.near)
+    for (const tissue::NearHexel& near : run.exchange().near)
         if (near.bare_gap_m < 1e-3f)
             snapshot.hottest_K =
                 std::max(snapshot.hottest_K, run.work().thermal.temperature_K[static_cast<std::size_t>(near.hexel)]);

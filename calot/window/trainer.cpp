@@ -178,7 +178,8 @@ void Trainer::load(int exercise) {
                                                    if (make) attempt_ = make(setup);
                                                    if (attempt_) observers.push_back(attempt_);
                                                    return observers;
-                                               });
+                                               },
+                                               options_.prepare);
     loading_since_s_ = now_s_;
     loading_step_ = viewer::Loader::Step::scene;
     screen_ = Screen::loading;

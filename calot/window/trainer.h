@@ -24,6 +24,7 @@ struct SceneWish {
 struct TrainerOptions {
     /// Called in a thread; throws InputError.
     std::function<scene::Scene(const SceneWish&)> make_scene;
+    std::function<void(simulation::Setup&)> prepare;  ///< what a session is set up from, before it is; may be empty
     std::vector<viewer::Exercise> exercises;
     std::optional<viewer::CutOff> cut_off;  ///< offered at the start
     /// A haptic device for a session's right hand; empty: none. Throws InputError.

@@ -5,6 +5,7 @@
 
 #include "calot/base/hash.h"
 #include "calot/base/parallel.h"
+#include "calot/deformation/kernel.h"
 #include "calot/deformation/stable_mass.h"
 #include "calot/validation/elastic_rig.h"
 
@@ -88,6 +89,31 @@ TEST(Kernel, GivesTheSameBytesOnEveryInstructionSet) {
     }
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+TEST(Kernel, OnePassOverMemoryGivesTheBytesOfTwo) {
+    Body apart = random_body(ElasticLaw::stable_neo_hookean, 0.1, {26, 24, 26}), together(apart);
+    const auto view = KernelView::make(apart.model, apart.state, apart.work);
+    sweep_gradients(view, apart.work.groups);
+    sweep_motion(view, apart.work.groups);
+
+    const auto other = KernelView::make(together.model, together.state, together.work);
+    const Groups all(together.work.groups);
+    const auto count = static_cast<std::int64_t>(all.size());
+    constexpr std::int64_t kChunk = 300;
+    std::vector<GroupRange> inner;
+    for (std::int64_t low = 0; low < count; low += kChunk) {
+        const GroupRange gradients{low, std::min(low + kChunk, count)};
+        inner.push_back(inner_groups(other, all, gradients));
+        sweep_both(other, all, gradients, inner.back());
+    }
+    ASSERT_GE(inner.size(), 3u);
+    for (std::size_t k = 1; k < inner.size(); ++k) {
+        const std::int64_t low = inner[k - 1].end, high = inner[k].begin;
+        EXPECT_LT(low, high);
+        sweep_motion(other, all.subspan(static_cast<std::size_t>(low), static_cast<std::size_t>(high - low)));
+    }
+    EXPECT_EQ(hash_of(together), hash_of(apart));
 }
 
 TEST(Integrate, GivesTheSameBytesForAnyNumberOfThreads) {

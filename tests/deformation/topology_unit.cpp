@@ -223,9 +223,9 @@ TEST(Topology, ACutBarTransmitsNoForce) {
     constexpr double kPull_m = 2e-3;
     constexpr double kTolerance_m = 2e-6;  // what 40/s of decay leaves of 2 mm after 0.2 s, and of slow bending
     for (int k = 0; k < 400; ++k) {
-        for (Mirror& mirror : bar.work.mirrors)
-            if (k < 100 && bar.model.phyxels.coordinates(mirror.ghost).x > 3)
-                mirror.face_m[0] = static_cast<float>(kPull_m * (k + 1) / 100.0);
+        for (std::size_t n = 0; n < bar.work.mirrors.size(); ++n)
+            if (k < 100 && bar.model.phyxels.coordinates(bar.work.mirrors[n].ghost).x > 3)
+                bar.work.face_m[0][n] = static_cast<float>(kPull_m * (k + 1) / 100.0);
         bar.tick();
     }
     const double stretched_J = elastic_energy_J(bar.model, bar.state, bar.work);

@@ -112,7 +112,8 @@ TEST(Update, DoesNotAllocate) {
         exchange.removed_hexels.assign(gone.begin() + static_cast<std::ptrdiff_t>(k),
                                        gone.begin() + static_cast<std::ptrdiff_t>(k + 40));
         for (std::int64_t h : exchange.removed_hexels) body.state.hexel_present.clear(h);
-        surface.update_dirty_blocks(body.model, body.state, exchange);
+        surface.remove(exchange);
+        surface.redo_dirty_blocks();
     }
     EXPECT_EQ(calot::test::allocations() - before, 0);
 }

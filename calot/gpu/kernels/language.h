@@ -1,5 +1,6 @@
 // One kernel source, two languages: OpenCL C 1.2 and CUDA C++. Every source includes this file first and keeps to what
-// both have: no vector types, no float atomics, no double, structs of 32-bit members only.
+// both have: no vector types, no float atomics, structs of 32-bit members only. `real` is double where the device has it
+// (DeviceInfo::has_double), else float: for what few items compute, and only there.
 //
 //   KERNEL void add(GLOBAL const float* a, GLOBAL float* b, int count) {
 //       const int i = GLOBAL_ID;
@@ -18,6 +19,12 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 typedef ulong u64;  // words of occupancy (deformation/work.h) only
+#if defined(CALOT_DOUBLE)
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+typedef double real;
+#else
+typedef float real;
+#endif
 
 #define KERNEL __kernel
 #define FN static inline
@@ -89,6 +96,7 @@ typedef unsigned int uint;
 typedef unsigned char uchar;
 typedef unsigned short ushort;
 typedef unsigned long long u64;
+typedef double real;
 
 #else
 #error "neither OpenCL C nor CUDA C++"
