@@ -8,6 +8,12 @@
 //   raise_masses                                           once
 //   motion, return_ghost_impulses, (contact.cl),
 //   move_ghosts, gradients                                 every substep
+//
+// What a phyxel costs, once each value is read from memory once and then from caches (without: 91 and 102 values read):
+//
+//                read          written                  additions and subtractions / multiplications
+//   motion       21 floats     6                        100 / 40
+//   gradients    17 floats     12, 22 where `whole`     280 / 170
 
 #define FACE_WEIGHT 27.0f  // deformation/links.h; edges weigh 1
 #define STIFFER 0.5f       // deformation/kernel.h
