@@ -78,13 +78,14 @@ Heat::Heat(std::shared_ptr<Device> device, const tissue::Model& model, Arrays& a
     touch_list_.reserve(static_cast<std::size_t>(touched_.size()));
 }
 
-GpuHeatStep Heat::make_step(const tissue::Model&, const tissue::JouleHeat& joule) const {
+/// A step in which Joule heat gives tissue so much [J].
+GpuHeatStep Heat::make_step(const tissue::Model& model, const tissue::State& state, double given_J) const {
     GpuHeatStep step = constant_;
-    step.joule_V2_s = static_cast<float>(static_cast<double>(joule.scale) * step_s_);
-    if (joule.size == Int3(0)) return step;
+    if (!(given_J > 0.0) || !(state.field.tissue_S > 0.0)) return step;
+    step.joule_V2_s = static_cast<float>(given_J / state.field.tissue_S);
     for (int k = 0; k < 3; ++k) {
-        step.joule_low[k] = joule.low[constant_.axes[k]];
-        step.joule_size[k] = joule.size[constant_.axes[k]];
+        step.joule_low[k] = state.field_low[constant_.axes[k]];
+        step.joule_size[k] = model.electric.window_cells;
     }
     return step;
 }
@@ -99,22 +100,21 @@ void Heat::enqueue_lists(const GpuHeatStep& step) {
 }
 
 void Heat::look_at(const tissue::Model& model, tissue::State& state) {
-    const GpuHeatStep step = make_step(model, {});
+    const GpuHeatStep& step = constant_;
     device_->launch(kernels_.look, std::int64_t{step.blocks} * HEAT_BLOCK, HEAT_BLOCK, step, materials_,
                     arrays_->hexel_material, arrays_->hexel_present, temperature_K_, arrays_->enthalpy_J_per_m3,
                     arrays_->water_kg_per_m3, steam_kg_per_m3_, warm_, counts_, sums_);
     enqueue_lists(step);
-    GpuHeatTotals totals{};
-    totals_.download(*device_, std::span<GpuHeatTotals>(&totals, 1));
+    totals_.download(*device_, std::span<GpuHeatTotals>(&result_, 1));
     pending_ = false;
-    take_spent(model, state, totals.spent);
+    take_spent(model, state, result_.spent);
 }
 
-void Heat::enqueue_step(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange,
+void Heat::enqueue_step(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
                         const DeviceArray<float>& joule_S_per_m3) {
     Device& d = *device_;
     Arrays& a = *arrays_;
-    const GpuHeatStep step = make_step(model, exchange.joule);
+    const GpuHeatStep step = make_step(model, state, given_J_);
     const std::int64_t items = std::int64_t{step.blocks} * HEAT_BLOCK;
     d.launch(kernels_.active, step.blocks, HEAT_BLOCK, step, a.hexel_initial, warm_, active_, totals_);
 
@@ -141,18 +141,23 @@ void Heat::enqueue_step(const tissue::Model& model, tissue::State& state, const 
     pending_ = true;
 }
 
-void Heat::conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
+void Heat::conduct(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange,
                    const DeviceArray<float>& joule_S_per_m3) {
+    tissue::EnergyBudget& energy = state.energy_J;
     if (exchange.joule.size != Int3(0)) {
-        const double outflow_J = exchange.joule.outflow_W * model.tick_s;
-        state.energy_J.outflow += outflow_J;
-        state.energy_J.delivered += outflow_J;
+        const double tissue_J = exchange.joule.total_W * model.tick_s,
+                     outflow_J = exchange.joule.outflow_W * model.tick_s;
+        energy.outflow += outflow_J;
+        energy.transit += tissue_J;
+        energy.delivered += tissue_J + outflow_J;
     }
-    const auto tick = static_cast<int>(state.tick % model.thermal.refresh_ticks);
-    if (tick != step_tick(model.thermal.refresh_ticks)) return;
+    const int ticks = model.thermal.refresh_ticks, tick = static_cast<int>(state.tick % ticks);
+    if (tick != step_tick(ticks)) return;
+    const double ahead_s = (ticks - 1 - tick) * model.tick_s;
+    given_J_ = std::max(0.0, energy.transit + exchange.joule.total_W * ahead_s);
     for (int substep = 0; substep < substeps_; ++substep) {
-        if (pending_) collect(model, state, exchange);
         enqueue_step(model, state, exchange, joule_S_per_m3);
+        if (substep + 1 < substeps_) book(model, state, exchange);
     }
 }
 
@@ -178,29 +183,50 @@ void Heat::emit_steam(const tissue::Model& model, tissue::Exchange& exchange, st
                                     0.0f, static_cast<float>(model.thermal.boiling_temperature_K)});
 }
 
-void Heat::collect(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange) {
+/// What a step did.
+void Heat::book(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange) {
     pending_ = false;
-    GpuHeatTotals totals{};
-    totals_.download(*device_, std::span<GpuHeatTotals>(&totals, 1));
+    totals_.download(*device_, std::span<GpuHeatTotals>(&result_, 1));
     const double volume = model.hexel_volume_m3();
-    auto sum_J = [&](int s) { return pair(totals.high[s], totals.low[s]) * volume; };
+    auto sum_J = [&](int s) { return pair(result_.high[s], result_.low[s]) * volume; };
     tissue::EnergyBudget& energy = state.energy_J;
-    energy.delivered += sum_J(HEAT_DELIVERED);
+    energy.transit -= given_J_;
+    energy.outflow += given_J_ - sum_J(HEAT_DELIVERED);  // of hexels that went since the field was solved
+    given_J_ = 0.0;
+    if (exchange.joule.total_W <= 0.0 && energy.transit < 0.0) {  // given ahead of a current that has ended
+        energy.delivered -= energy.transit;
+        energy.transit = 0.0;
+    }
     energy.perfusion += sum_J(HEAT_PERFUSION);
     energy.surface += sum_J(HEAT_SURFACE);
     energy.gas += sum_J(HEAT_GAS);
     energy.latent += sum_J(HEAT_LATENT);
-    if (totals.bad_hexel != HEAT_NONE && state.status.ok)
-        state.status = {false, "enthalpy", totals.bad_hexel, state.tick};
-    if (contact_.wire.area_m2 > 0.0)
-        thermal::settle_wire(model, state, exchange, contact_.wire, pair(totals.tip_high, totals.tip_low) * volume,
-                             step_s_);
-    take_spent(model, state, totals.spent);
-    emit_steam(model, exchange, totals.boiled);
+    if (result_.bad_hexel != HEAT_NONE && state.status.ok)
+        state.status = {false, "enthalpy", result_.bad_hexel, state.tick};
+    if (contact_.wire.area_m2 > 0.0) {
+        const double tissue_J = pair(result_.tip_high, result_.tip_low) * volume;
+        thermal::settle_wire(model, state, contact_.wire, tissue_J, 0.0, step_s_);
+        state.tip.heat_W += exchange.joule.wire_W;  // book_arcs
+    }
+}
+
+/// Heat of arcs into the wire in this tick.
+void Heat::book_arcs(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange) {
+    const thermal::BareWire wire = thermal::bare_wire(model.thermal, exchange.capsules);
+    if (wire.area_m2 <= 0.0) return;
+    const double arcs_J = exchange.joule.wire_W * model.tick_s;
+    state.energy_J.delivered += arcs_J;
+    state.energy_J.tip += arcs_J;
+    state.tip.temperature_K += arcs_J / wire.heat_capacity_J_per_K;
 }
 
 void Heat::remove_vaporised(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange) {
-    if (pending_) collect(model, state, exchange);
+    if (pending_) {
+        book(model, state, exchange);
+        take_spent(model, state, result_.spent);
+        emit_steam(model, exchange, result_.boiled);
+    }
+    book_arcs(model, state, exchange);
     host_.burnt.clear();
     thermal::remove_vaporised(model, state, exchange, host_);
     if (host_.burnt.empty()) return;

@@ -3,12 +3,18 @@
 //
 // A device has no need to spread a heat step over the ticks of its interval: all of it runs in one tick, the one about
 // which the host's parts lie (of 8 ticks the fourth). Its temperatures, and so its result, are those of the host's
-// step but for what happened in between: hexels that burnt since, a new voltage. Between steps State is complete.
+// step but for what happened in between, hexels that burnt since.
 //
 //     tick   0        1        2        3                  4 ...                7
 //                                       heat step
 //                                       lists come back
 //            a quarter of the hexels that are gas goes in every tick, taken from the list by the host
+//
+// Joule heat. On the host a hexel takes the heat of the tick in which its block has its turn, for all eight. Here the
+// step gives what came since the step before, and as much ahead as the ticks that remain of the interval will bring if
+// all stays as it is; EnergyBudget::transit remembers what that is wrong by. So the two agree while a current flows
+// steadily, and what the generator gives arrives, however often it comes and goes. What hexels would have got that went
+// since the field was solved counts as outflow. Between steps State is complete.
 //
 // On the host stay: the wire's temperature, the energy budget, which hexels are present (State::hexel_present is kept
 // up with what goes), the list of those that are gas. What else State holds of hexels is on the device (gpu::Arrays).
@@ -35,8 +41,9 @@ class Heat {
     /// After Arrays::upload: temperatures, and what is gas already.
     void look_at(const tissue::Model& model, tissue::State& state);
 
-    /// thermal::conduct. Joule heat is `joule_S_per_m3` where Exchange::joule says, times its scale. Only enqueues.
-    void conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange,
+    /// thermal::conduct. `joule_S_per_m3`: heat of one volt in the window at State::field_low, whose sum is
+    /// FieldState::tissue_S. Only enqueues.
+    void conduct(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange,
                  const DeviceArray<float>& joule_S_per_m3);
 
     /// thermal::remove_vaporised, after conduct in every tick. Waits for the step where this tick had one.
@@ -54,11 +61,12 @@ class Heat {
     struct Kernels {
         Kernel active, tip, flow, settle, look, totals, list, remove;
     };
-    GpuHeatStep make_step(const tissue::Model& model, const tissue::JouleHeat& joule) const;
-    void enqueue_step(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange,
+    GpuHeatStep make_step(const tissue::Model& model, const tissue::State& state, double given_J) const;
+    void enqueue_step(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
                       const DeviceArray<float>& joule_S_per_m3);
     void enqueue_lists(const GpuHeatStep& step);
-    void collect(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange);
+    void book(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange);
+    void book_arcs(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange);
     void take_spent(const tissue::Model& model, tissue::State& state, std::int32_t count);
     void emit_steam(const tissue::Model& model, tissue::Exchange& exchange, std::int32_t count);
 
@@ -79,7 +87,9 @@ class Heat {
     DeviceArray<GpuHeatTotals> totals_;
     DeviceArray<std::int32_t> removed_;
 
-    bool pending_ = false;  ///< a step has been enqueued whose lists have not been looked at
+    bool pending_ = false;    ///< a step has been enqueued whose lists have not been looked at
+    double given_J_ = 0.0;    ///< by Joule heat in the step under way
+    GpuHeatTotals result_{};  ///< of the last step
     thermal::WireContact contact_;
     std::vector<GpuTouch> touch_list_;
     std::vector<GpuHexelValue> values_;

@@ -70,12 +70,11 @@ double passed_J_per_m3K(const tissue::Model& model, const Properties& properties
     return std::min(share, 0.25 * static_cast<double>(properties.dry_capacity_J_per_m3K[m]));
 }
 
-void settle_wire(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange,
-                 const BareWire& wire, double taken_J, double dt_s) {
+void settle_wire(const tissue::Model& model, tissue::State& state, const BareWire& wire, double tissue_J, double arcs_J,
+                 double dt_s) {
     tissue::TipState& tip = state.tip;
-    const double arcs_J = exchange.joule.wire_W * dt_s;
     state.energy_J.delivered += arcs_J;
-    taken_J += arcs_J;
+    const double taken_J = tissue_J + arcs_J;
     const double lost_J = wire.loss_W_per_K * (tip.temperature_K - model.thermal.body_temperature_K) * dt_s;
     tip.heat_W = taken_J / dt_s;
     tip.lost_J += lost_J;
@@ -103,7 +102,7 @@ void exchange_with_tip(const tissue::Model& model, tissue::State& state, const t
         work.active.set((near.hexel - model.hexels.first) / kBlockCells);
         taken_J -= static_cast<double>(enthalpy - before) * volume;
     }
-    settle_wire(model, state, exchange, contact.wire, taken_J, dt_s);
+    settle_wire(model, state, contact.wire, taken_J, exchange.joule.wire_W * dt_s, dt_s);
 }
 
 void stick_char(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,

@@ -36,9 +36,9 @@ WireContact find_wire_contact(const tissue::Model& model, const tissue::State& s
 /// What a touched hexel takes in a step per kelvin between wire and hexel [J/(m^3 K)].
 double passed_J_per_m3K(const tissue::Model& model, const Properties& properties, const WireContact& contact,
                         std::int64_t hexel, double dt_s);
-/// Books a step of the wire, in which tissue gave it `taken_J`: arcs, losses, its temperature.
-void settle_wire(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange,
-                 const BareWire& wire, double taken_J, double dt_s);
+/// Books a step of the wire, in which tissue and arcs gave it so much: losses, its temperature.
+void settle_wire(const tissue::Model& model, tissue::State& state, const BareWire& wire, double tissue_J, double arcs_J,
+                 double dt_s);
 
 /// One heat step's exchange between the wire, arcs and the hexels that it touches. Adds the blocks that it heats to
 /// Work::active.

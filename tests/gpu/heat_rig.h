@@ -5,8 +5,19 @@
 #include "calot/tissue/exchange.h"
 #include "calot/validation/heat_rig.h"
 #include "gpu/rig.h"
+#include "thermal/burn_bodies.h"
 
 namespace calot::gpu {
+
+/// Edge of the window of Joule heat.
+inline constexpr int kBox = 16;
+
+/// The body of thermal's tests of burning.
+inline tissue::Model burning_body(const Int3& size, tissue::PhaseModel phase = tissue::PhaseModel::water_then_solids) {
+    tissue::Model model = thermal::burn_model(size, phase);
+    model.electric.window_cells = kBox;
+    return model;
+}
 
 /// A run of heat alone on a device, as thermal::HeatRun is on the host.
 struct GpuHeatRun {
@@ -23,7 +34,7 @@ struct GpuHeatRun {
           state(std::move(s)),
           arrays(*device, model),
           heat(device, model, arrays),
-          joule(*device, 32 * 32 * 32) {
+          joule(*device, kBox * kBox * kBox) {
         tissue::reserve_exchange(model, exchange);
         start();
     }
@@ -36,7 +47,10 @@ struct GpuHeatRun {
         exchange.joule = other.joule;
         exchange.near = other.near;
         exchange.capsules = other.capsules;
-        if (other.joule.size != Int3(0)) joule.upload(*device, other.joule.density);
+        if (other.joule.size == Int3(0)) return;
+        joule.upload(*device, other.joule.density);
+        state.field_low = other.joule.low;
+        state.field.tissue_S = other.joule.total_W / static_cast<double>(other.joule.scale);
     }
     void tick() {
         exchange.gas.clear();
@@ -48,15 +62,20 @@ struct GpuHeatRun {
     void fetch() { arrays.download(*device, state); }
 };
 
-/// Heat that falls off as 1/r^4 from a spot on the surface which moves along x; none beyond the lattice.
+/// Heat that falls off as 1/r^4 from a spot on the surface which moves along x, in hexels that are present.
 inline void burn_spot(thermal::HeatRun& run, std::int64_t tick) {
-    const Int3 size = run.model.hexels.size, box(16);
+    const Int3 size = run.model.hexels.size, box(kBox);
     run.exchange.joule.outflow_W = 10.0;
     const Vec3 spot(6.0 + 0.01 * static_cast<double>(tick), 0.5 * size.y, size.z - 3.0);
-    run.set_joule(Int3(spot) - 8, box, [&](const Int3& c) {
+    run.set_joule(Int3(spot) - kBox / 2, box, [&](const Int3& c) {
         const Vec3 d = Vec3(c) - spot;
-        return run.model.hexels.contains(c) ? 2e10 / std::pow(1.0 + 0.3 * glm::dot(d, d), 2.0) : 0.0;
+        const bool there = run.model.hexels.contains(c) && run.state.hexel_present.test(run.model.hexels.index(c));
+        return there ? 2e10 / std::pow(1.0 + 0.3 * glm::dot(d, d), 2.0) : 0.0;
     });
+    tissue::JouleHeat& joule = run.exchange.joule;
+    joule.total_W = 0.0;
+    for (const float density : joule.density) joule.total_W += static_cast<double>(density * joule.scale);
+    joule.total_W *= run.model.hexel_volume_m3();
 }
 
 /// A bare wire over a run of surface hexels, of which every second one is touched.

@@ -1,5 +1,6 @@
-#include "field_types.h"
 #include "language.h"
+
+#include "field_types.h"
 #include "sum_group.h"
 
 // The electric field about the tip (docs/physics.md section 5): what electric/assemble.cpp, multigrid.cpp and joule.cpp

@@ -1,5 +1,6 @@
-#include "heat_types.h"
 #include "language.h"
+
+#include "heat_types.h"
 #include "scan_group.h"
 #include "sum_group.h"
 

@@ -23,7 +23,7 @@ struct GpuHeatStep {
     int threshold;            ///< PhaseModel::threshold
     float body_K, gas_K, wet_limit_K, dt_s;
     int joule_low[3], joule_size[3];  ///< box of Joule heat; no size: none
-    float joule_V2_s;                 ///< from the heat of one volt to what a step brings: V^2 dt
+    float joule_V2_s;                 ///< from the heat of one volt to what the step brings: V^2 s
 };
 
 /// A hexel that the wire touches.
