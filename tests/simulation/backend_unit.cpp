@@ -43,12 +43,11 @@ class Elsewhere final : public Backend {
         work.smoke = work_->smoke;
         work.bleeding = work_->bleeding;
     }
-    void fetch_state(const tissue::Model& model, tissue::State& state, Work& work) override {
+    void fetch_state(const tissue::Model&, tissue::State& state, Work& work) override {
         if (record_.fetch_fails) throw BackendError("it does not answer");
         ++record_.state_fetches;
         state = state_;
         work.thermal.temperature_K = work_->thermal.temperature_K;
-        work.deformation = deformation::make_work(model, state);
     }
     void fetch_surface(const tissue::Model& model, const tissue::State&, Work& work) override {
         ++record_.surface_fetches;
