@@ -6,6 +6,7 @@
 #include "calot/deformation/embedding.h"
 #include "calot/deformation/grasp.h"
 #include "calot/deformation/integrate.h"
+#include "calot/deformation/settle.h"
 #include "calot/deformation/tear.h"
 #include "calot/deformation/topology.h"
 #include "calot/instruments/contact.h"
@@ -87,6 +88,7 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
         "simulation.move_and_heat",
         [&] {
             StageClock moving(work.stage_us);
+            deformation::settle(state);
             deformation::advance(model, state, exchange, work.deformation);
             moving.lap(Stage::deformation);
         },
