@@ -253,7 +253,7 @@ void main() {
     look.bump += 0.14 * bare * (0.3 + 0.7 * fatness);
     look.coat_rough = mix(look.coat_rough, 0.15, bare);
 
-    vec3 pale = mix(vec3(0.58, 0.40, 0.19), vec3(0.76, 0.63, 0.41), clamp(0.5 + 2.0 * (s.fine.a - 0.5) + 1.2 * (s.base.a - 0.5), 0.0, 1.0));
+    vec3 pale = mix(vec3(0.64, 0.53, 0.37), vec3(0.76, 0.69, 0.56), clamp(0.5 + 2.0 * (s.fine.a - 0.5) + 1.2 * (s.base.a - 0.5), 0.0, 1.0));
     look.albedo = mix(look.albedo, pale, (0.55 + 0.35 * s.base.a) * blanched);
     vec3 brown = mix(vec3(0.34, 0.145, 0.035), vec3(0.13, 0.045, 0.014), smoothstep(150.0, 230.0, peak + 60.0 * (s.fine.g - 0.5)));
     look.albedo = mix(look.albedo, brown, 0.92 * browned);

@@ -43,6 +43,10 @@ void pedal_box(const Gui& gui, const char* name, double setting_W, const ImVec4&
     ImGui::Dummy(ImVec2(width, height));
 }
 
+std::string ohms(double value) {
+    return value < 1e4 ? fmt::format("{:.0f} \xce\xa9", value) : fmt::format("{:.0f} k\xce\xa9", 1e-3 * value);
+}
+
 /// Beneath the two pedals: their units tell them apart.
 void two_values(const std::string& left, const std::string& right) {
     const float room = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
@@ -68,7 +72,7 @@ void draw_generator(const Gui& gui, const Language& text, const HudContent& cont
         const tissue::GeneratorState& g = shot.generator;
         const bool loaded = g.impedance_Ohm > 0.0 && shot.input.pedal;
         two_values(fmt::format("{:.1f} W", g.power_W),
-                   loaded ? fmt::format("{:.0f} \xce\xa9", g.impedance_Ohm) : "\xe2\x80\x93 \xce\xa9");
+                   loaded ? ohms(g.impedance_Ohm) : "\xe2\x80\x93 \xce\xa9");
         two_values(fmt::format("{:.0f} V", g.voltage_V), fmt::format("{:.0f} mA", 1e3 * g.current_A));
         if (shot.input.pedal && g.limit >= 0 && g.limit <= 3)  // what the generator is up against
             name_and_value(text("generator.limit"), text("generator.limit." + std::to_string(g.limit)));
