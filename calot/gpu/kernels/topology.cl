@@ -3,7 +3,8 @@
 #include "lattice.h"
 #include "neighbours.h"
 
-// Burning changes topology (deformation/topology.h has the rules, holding.h and occupancy.h how they are told on words).
+// Burning changes topology (deformation/topology.h has the rules, holding.h and occupancy.h how they are told on
+// words).
 // An item is a phyxel that lost hexels, or one of its links. Links are bits at both ends: WORD_LINKS. Faces come first,
 // in a kernel of their own, since edges hold where faces do. Searching what hangs on nothing any more follows chains of
 // cells: the host does it, on its own bits, and names the phyxels that fall.
