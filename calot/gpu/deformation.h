@@ -55,7 +55,7 @@ class Deformation {
     const DeviceArray<float>& gradient() const { return gradient_; }    ///< G, [9][phyxels.cells]
 
     // For tests and figures.
-    /// What the host keeps: bits and rest properties are current, what moves is not.
+    /// What the host keeps: bits, link words, moments and mirrors are current, nothing else.
     const deformation::Work& host_work() const { return host_; }
     const DeviceArray<float>& moment_stress() const { return moment_stress_; }  ///< M, [9][phyxels.cells]
     const DeviceArray<float>& rest() const { return rest_; }                    ///< [REST_PLANES][phyxels.cells]

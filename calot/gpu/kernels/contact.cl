@@ -1,9 +1,9 @@
 #include "language.h"
 #include "types.h"
 
-// Contacts of instruments and what a grasper holds, inside a substep (deformation/contact.h has the law; sums run in the
-// order of deformation/contact_reference.cpp). The host says which points there are and which phyxels carry them: rows of
-// `psi`, a line for each point. One group of 256 items solves all of them.
+// Contacts of instruments and what a grasper holds, inside a substep (deformation/contact.h has the law; sums run in
+// the order of deformation/contact_reference.cpp). The host says which points there are and which phyxels carry them:
+// rows of `psi`, a line for each point. One group of 256 items solves all of them.
 
 #define MOST_POINTS 48  // deformation::kMaxPoints
 #define LANES 16        // deformation::kContactLanes

@@ -3,9 +3,9 @@
 #include "lattice.h"
 #include "neighbours.h"
 
-// What phyxels are at rest, where hexels or links changed (deformation/rest.cpp and stable_mass.cpp: their equations and
-// order of operations). An item is a cell; rest properties first, then masses, which ask for those of the neighbours.
-// Few items: real.
+// What phyxels are at rest, where hexels or links changed (deformation/rest.cpp and stable_mass.cpp: their equations
+// and order of operations). An item is a cell; rest properties first, then masses, which ask for those of the
+// neighbours. Few items: real.
 
 #define FACE_WEIGHT ((real)27)  // deformation/links.h; edges weigh 1
 
@@ -92,8 +92,8 @@ FN void gradient_of_link(const real* inverse, real weighted_spacing, const real*
     g[2] = inverse[2] * x + inverse[4] * y + inverse[5] * z;
 }
 
-/// Moment, volume, constants, hourglass control and pull of phyxels and ghosts, which phyxels a ghost mirrors, and links
-/// as bit arrays have them. Cells without stress of their own get none.
+/// Moment, volume, constants, hourglass control and pull of phyxels and ghosts, which phyxels a ghost mirrors, and
+/// links as bit arrays have them. Cells without stress of their own get none.
 KERNEL void refresh_rest(struct GpuTopology t, GLOBAL const int* cells, int count, GLOBAL const real* numbers,
                          GLOBAL const uint* present, GLOBAL const uint* ghost, GLOBAL const uchar* material,
                          GLOBAL uint* words, GLOBAL uint* link_bits, GLOBAL float* rest, GLOBAL float* gradient,
