@@ -69,15 +69,37 @@ GpuMetal metal_of(const tissue::Model& model, const tissue::State& state) {
 }  // namespace
 
 void Field::find_kernels() {
-    auto find = [&](const char* name) { return device_->kernel("field", name); };
-    kernels_ = {
-        find("field_gather"), find("field_enter"),    find("field_burn"),          find("field_connect"),
-        find("field_faces"),  find("field_weights"),  find("field_aggregate"),     find("field_aggregate_small"),
-        find("field_guess"),  find("field_begin"),    find("field_begin_scalars"), find("field_start"),
-        find("field_norms"),  find("field_restrict"), find("field_descend"),       find("field_small_cycle"),
-        find("field_ascend"), find("field_beta"),     find("field_direction"),     find("field_apply"),
-        find("field_alpha"),  find("field_advance"),  find("field_weigh"),         find("field_scale"),
-        find("field_heat"),   find("field_heat_sums")};
+    auto matrix = [&](const char* name) { return device_->kernel("field_matrix", name); };
+    auto cycle = [&](const char* name) { return device_->kernel("field_cycle", name); };
+    auto iterate = [&](const char* name) { return device_->kernel("field_iterate", name); };
+    auto heat = [&](const char* name) { return device_->kernel("field_heat", name); };
+    Kernels& k = kernels_;
+    k.gather = matrix("field_gather");
+    k.enter = matrix("field_enter");
+    k.burn = matrix("field_burn");
+    k.connect = matrix("field_connect");
+    k.faces = matrix("field_faces");
+    k.weights = matrix("field_weights");
+    k.aggregate = matrix("field_aggregate");
+    k.aggregate_small = matrix("field_aggregate_small");
+    k.guess = matrix("field_guess");
+    k.restrict = cycle("field_restrict");
+    k.descend = cycle("field_descend");
+    k.small_cycle = cycle("field_small_cycle");
+    k.ascend = cycle("field_ascend");
+    k.begin = iterate("field_begin");
+    k.begin_scalars = iterate("field_begin_scalars");
+    k.start = iterate("field_start");
+    k.norms = iterate("field_norms");
+    k.beta = iterate("field_beta");
+    k.direction = iterate("field_direction");
+    k.apply = iterate("field_apply");
+    k.alpha = iterate("field_alpha");
+    k.advance = iterate("field_advance");
+    k.weigh = heat("field_weigh");
+    k.scale = heat("field_scale");
+    k.heat = heat("field_heat");
+    k.heat_sums = heat("field_heat_sums");
 }
 
 void Field::make_levels(int cells) {
@@ -117,6 +139,7 @@ Field::Field(std::shared_ptr<Device> device, const tissue::Model& model, const A
     parts_ = DeviceArray<float>(d, groups * 3 * 2);
     heat_parts_ = DeviceArray<GpuFieldSum>(d, groups * sums);
     heat_sums_ = DeviceArray<GpuFieldSum>(d, sums);
+    sum_list_.resize(static_cast<std::size_t>(sums));
     scalars_ = DeviceArray<GpuFieldScalars>(d, 1);
     entries_ = DeviceArray<GpuEntry>(d, tissue::kNearCapacity);
     entry_list_.reserve(static_cast<std::size_t>(entries_.size()));
@@ -249,8 +272,8 @@ void Field::iterate(int count) {
 
 /// What electric/joule.cpp keeps of the sums.
 void Field::keep_heat(const tissue::Model& model, tissue::State& state, const GpuFieldScalars& scalars) {
-    std::vector<GpuFieldSum> sums(static_cast<std::size_t>(heat_sums_.size()));
-    heat_sums_.download(*device_, std::span<GpuFieldSum>(sums));
+    const std::vector<GpuFieldSum>& sums = sum_list_;
+    heat_sums_.download(*device_, std::span<GpuFieldSum>(sum_list_));
     const double s = model.hexels.spacing_m;
     const auto total_S = [&](std::int32_t k) {
         const GpuFieldSum& sum = sums[static_cast<std::size_t>(k)];

@@ -1,6 +1,6 @@
 #pragma once
 // The electric field about the tip on a device: what electric/solve.h does, with the same operations and on the same
-// schedule of a frame, so that its results are the host's up to rounding (kernels/field.cl).
+// schedule of a frame, so that its results are the host's up to rounding (kernels/field_*.cl).
 //
 // Conjugate gradients with the host's preconditioner: on the finest level Jacobi and the coarse correction are added,
 // below it is a V-cycle. A device wants that even more than a host does: what costs there is the launches, and a
@@ -94,7 +94,8 @@ class Field {
     GpuPoles poles_{};
     Vec3 centre_{0.0};  ///< of the entries, window coordinates
     std::vector<GpuEntry> entry_list_;
-    BitArray listed_;  ///< cells of the entries
+    BitArray listed_;                    ///< cells of the entries
+    std::vector<GpuFieldSum> sum_list_;  ///< what came back
     int iterations_ = 0;
 };
 
