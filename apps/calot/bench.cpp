@@ -10,6 +10,7 @@
 
 #include "bench_ceilings.h"
 #include "bench_compare.h"
+#include "bench_gpu.h"
 #include "bench_html.h"
 #include "bench_json.h"
 #include "bench_machine.h"
@@ -37,11 +38,17 @@ Jobs plan_jobs(const BenchOptions& options, const BenchPlan& plan, BenchResults&
         measure_ceilings(plan.thread_counts(), plan.quick, results.ceilings, report);
     };
     jobs.add("ceilings of the machine", plan.quick ? 0.3 : 3.0, ceilings);
-    if (wanted(options, "kernels")) add_kernels(plan, jobs, results);
-    if (wanted(options, "surface")) add_surface(plan, jobs, results);
-    if (wanted(options, "tick")) add_ticks(plan, jobs, results);
-    if (wanted(options, "scale")) add_scale(plan, jobs, results);
-    if (wanted(options, "paper")) add_paper(plan, jobs, results);
+    if (plan.device) {
+        add_device_limits(plan, jobs, results);
+        if (wanted(options, "kernels")) add_device_kernels(plan, jobs, results);
+        if (wanted(options, "tick")) add_ticks(plan, jobs, results);
+    } else {
+        if (wanted(options, "kernels")) add_kernels(plan, jobs, results);
+        if (wanted(options, "surface")) add_surface(plan, jobs, results);
+        if (wanted(options, "tick")) add_ticks(plan, jobs, results);
+        if (wanted(options, "scale")) add_scale(plan, jobs, results);
+        if (wanted(options, "paper")) add_paper(plan, jobs, results);
+    }
     jobs.add("ceilings once more", plan.quick ? 0.3 : 3.0, ceilings);
     jobs.add("floors", 0.01, [&results](const Jobs::Report&) {
         for (KernelResult& kernel : results.kernels) set_floor(results.ceilings, kernel);
@@ -75,6 +82,25 @@ void print_ticks(const BenchResults& results) {
                        1e-3 * static_cast<double>(t.worst.front().tick), t.worst.front().cause);
 }
 
+void print_device(const DeviceBench& device) {
+    if (device.name.empty()) return;
+    fmt::print("\n{}: a launch {:.1f} us, with four bytes back {:.1f} us; {:.1f} GB/s up, {:.1f} down, {:.1f} within\n",
+               device.name, device.launch_us, device.round_trip_us, device.up_GB_per_s, device.down_GB_per_s,
+               device.copy_GB_per_s);
+    fmt::print("{:<40}{:>12}{:>11}{:>11}{:>11}{:>10}{:>8}{:>11}{:>11}\n", "on the device, us", "size", "whole",
+               "kernels", "transfers", "launches", "waits", "bytes up", "down");
+    for (const DeviceCost& c : device.costs)
+        fmt::print("{:<40}{:>12}{:>11.1f}{:>11.1f}{:>11.1f}{:>10.1f}{:>8.1f}{:>11.0f}{:>11.0f}\n", c.name,
+                   grouped_number(c.size), c.us, c.kernels_us, c.transfers_us, c.launches, c.reads, c.bytes_up,
+                   c.bytes_down);
+    for (const DeviceCost& c : device.costs) {
+        std::string longest;
+        for (std::size_t k = 0; k < std::min<std::size_t>(5, c.kernel_us.size()); ++k)
+            longest += fmt::format("{}{} {:.1f}", k == 0 ? "" : ", ", c.kernel_us[k].first, c.kernel_us[k].second);
+        if (!longest.empty()) fmt::print("  {}: {}\n", c.name, longest);
+    }
+}
+
 void print_paper(const BenchResults& results) {
     if (results.paper.empty()) return;
     fmt::print("\n{:<10}{:>11}  {:<42}{:>12}{:>14}\n", "paper", "size", "stage", "ours ms", "published ms");
@@ -100,6 +126,7 @@ void print_results(const BenchResults& results) {
     fmt::print("\n");
     print_kernels(results);
     print_ticks(results);
+    print_device(results.device);
     print_scale(results);
     print_paper(results);
     for (const std::string& note : results.notes) fmt::print("note: {}\n", note);
@@ -141,6 +168,17 @@ int bench(const BenchOptions& options) {
         options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     plan.quick = options.quick;
     plan.simulated_s = options.seconds > 0.0 ? options.seconds : options.quick ? 1.8 : 30.0;
+
+    if (options.backend.kind != gpu::BackendKind::cpu) {
+        // Scenes of all sizes are measured: `auto` asks for a GPU, not for a size.
+        const gpu::BackendChoice choice = gpu::choose_backend(options.backend, gpu::devices(), gpu::kWorthADevice);
+        plan.device = choice.device;
+        fmt::print(stderr, "calot: backend: {}\n", choice.why);
+        for (const std::string& suite : options.suites)
+            if (plan.device && suite != "kernels" && suite != "tick")
+                throw InputError(fmt::format("the suite {} is of the CPU", suite),
+                                 "with --backend gpu there are kernels and tick");
+    }
 
     BenchResults results;
     results.quick = options.quick;

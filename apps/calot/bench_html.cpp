@@ -136,7 +136,8 @@ std::string bench_html(const BenchResults& results, const std::vector<Comparison
         kReportStyle, kBenchStyle, CALOT_VERSION, escaped(results.machine.processor), results.machine.cores,
         results.machine.cores == 1 ? "" : "s", results.wall_s, results.quick ? ", a quick look only" : "");
     out += head_figures(results) + comparison_section(comparisons) + tick_section(results) + kernels_section(results) +
-           scale_section(results) + paper_section(results) + machine_section(results) + notes_section(results);
+           device_section(results) + scale_section(results) + paper_section(results) + machine_section(results) +
+           notes_section(results);
     return out +
            "<footer>Written by calot bench. What the figures mean: "
            "docs/performance.md.</footer></main></body></html>\n";

@@ -16,6 +16,7 @@ std::string kernels_section(const BenchResults& results);
 std::string tick_section(const BenchResults& results);
 std::string paper_section(const BenchResults& results);
 std::string scale_section(const BenchResults& results);
+std::string device_section(const BenchResults& results);
 
 /// 1178091 -> "1,178,091"
 std::string grouped_number(std::int64_t number);

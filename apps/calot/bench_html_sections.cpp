@@ -125,6 +125,27 @@ std::string tick_section(const BenchResults& results) {
     return out;
 }
 
+std::string device_section(const BenchResults& results) {
+    const DeviceBench& device = results.device;
+    if (device.name.empty()) return "";
+    std::string out = fmt::format(
+        "<h2>On the device</h2><p>{}. A launch takes {}, with four bytes back {}; {:.1f} GB/s go up, {:.1f} down, "
+        "{:.1f} "
+        "within the device.</p><div class=\"scroll\"><table class=\"wide\"><tr><th></th><th>size</th><th>whole</th>"
+        "<th>kernels</th><th>transfers</th><th>launches</th><th>waits</th><th>bytes up</th><th>bytes down</th></tr>",
+        escaped(device.name), time_text(device.launch_us), time_text(device.round_trip_us), device.up_GB_per_s,
+        device.down_GB_per_s, device.copy_GB_per_s);
+    for (const DeviceCost& c : device.costs)
+        out += fmt::format(
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.0f}</td>"
+            "<td>{:.0f}</td></tr>",
+            escaped(c.name), grouped_number(c.size), time_text(c.us), time_text(c.kernels_us),
+            time_text(c.transfers_us), c.launches, c.reads, c.bytes_up, c.bytes_down);
+    return out +
+           "</table></div><p>Averages of a call or a tick. The whole is by the host's clock, waiting included; ticks "
+           "are measured here with the device's clocks on, which costs some of it.</p>\n";
+}
+
 std::string kernels_section(const BenchResults& results) {
     if (results.kernels.empty()) return "";
     double low = 1e300, high = 0.0;

@@ -96,6 +96,31 @@ Json short_list(const std::vector<double>& values) {
     return out;
 }
 
+Json device_json(const DeviceBench& device) {
+    Json costs = Json::array();
+    for (const DeviceCost& c : device.costs) {
+        Json kernels = Json::object();
+        for (const auto& [kernel, us] : c.kernel_us) kernels[kernel] = rounded(us);
+        costs.push_back({{"name", c.name},
+                         {"size", c.size},
+                         {"us", rounded(c.us)},
+                         {"kernels_us", rounded(c.kernels_us)},
+                         {"transfers_us", rounded(c.transfers_us)},
+                         {"launches", rounded(c.launches)},
+                         {"reads", rounded(c.reads)},
+                         {"bytes_up", rounded(c.bytes_up)},
+                         {"bytes_down", rounded(c.bytes_down)},
+                         {"by_kernel_us", kernels}});
+    }
+    return {{"name", device.name},
+            {"launch_us", rounded(device.launch_us)},
+            {"round_trip_us", rounded(device.round_trip_us)},
+            {"up_GB_per_s", rounded(device.up_GB_per_s)},
+            {"down_GB_per_s", rounded(device.down_GB_per_s)},
+            {"copy_GB_per_s", rounded(device.copy_GB_per_s)},
+            {"costs", costs}};
+}
+
 }  // namespace
 
 std::string bench_json(const BenchResults& results) {
@@ -112,6 +137,7 @@ std::string bench_json(const BenchResults& results) {
                                   {"floor_us", or_null(k.floor_us)}});
     out["tick"] = Json::array();
     for (const TickResult& tick : results.tick) out["tick"].push_back(tick_json(tick));
+    if (!results.device.name.empty()) out["device"] = device_json(results.device);
     out["paper"] = Json::array();
     for (const PaperRow& row : results.paper)
         out["paper"].push_back({{"table", row.table},

@@ -121,6 +121,28 @@ struct ScaleResult {
     int threads = 1;
 };
 
+/// What a call or a tick on a device is made of, on average.
+struct DeviceCost {
+    std::string name;
+    std::int64_t size = 0;
+    std::string unit;
+    double us = 0.0;                              ///< by the host's clock, waiting included
+    double kernels_us = 0.0, transfers_us = 0.0;  ///< by the device's
+    double launches = 0.0, reads = 0.0;           ///< of reads each waits for the device
+    double bytes_up = 0.0, bytes_down = 0.0;
+    std::vector<std::pair<std::string, double>> kernel_us;  ///< by kernel, longest first
+};
+
+/// `--backend gpu`.
+struct DeviceBench {
+    std::string name;  ///< empty: the CPU computed
+    double launch_us = 0.0;      ///< of one kernel among many
+    double round_trip_us = 0.0;  ///< of one kernel and four bytes back
+    double up_GB_per_s = 0.0, down_GB_per_s = 0.0;
+    double copy_GB_per_s = 0.0;  ///< within the device, bytes read and bytes written
+    std::vector<DeviceCost> costs;
+};
+
 struct BenchResults {
     Machine machine;
     Ceilings ceilings;
@@ -130,6 +152,7 @@ struct BenchResults {
     std::vector<Picture64> pictures;
     std::vector<PressCurve> press;
     ScaleResult scale;
+    DeviceBench device;
     std::vector<std::string> notes;
     double wall_s = 0.0;
     bool quick = false;

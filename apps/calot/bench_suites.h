@@ -2,11 +2,13 @@
 // The suites of `calot bench`: each adds its jobs, which write into `results`.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "bench_jobs.h"
 #include "bench_measure.h"
 #include "bench_results.h"
+#include "calot/gpu/choose.h"
 
 namespace calot::app {
 
@@ -14,6 +16,7 @@ struct BenchPlan {
     int threads = 1;          ///< the most that are used
     double simulated_s = 30;  ///< of each scene
     bool quick = false;
+    std::optional<gpu::DeviceInfo> device;  ///< ticks and kernels run there
 
     /// Seconds for a kernel.
     double per_kernel_s() const { return quick ? 0.1 : 2.0; }

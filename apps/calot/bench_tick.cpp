@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bench_bodies.h"
+#include "bench_gpu.h"
 #include "bench_suites.h"
 #include "bench_tick_watch.h"
 #include "calot/base/parallel.h"
@@ -22,9 +23,10 @@ struct TickScene {
     double weight = 10.0;
 };
 
-void run_scene(const TickScene& scene, BenchResults& results, const Jobs::Report& report) {
+void run_scene(const TickScene& scene, const BenchPlan& plan, BenchResults& results, const Jobs::Report& report) {
     const ThreadLimit limit(scene.threads);
     const auto setup = scene.make();
+    if (plan.device) gpu::use_backend({plan.device, ""}, *setup);
     simulation::Simulation run(setup);
     TickResult result;
     result.scene = scene.scene;
@@ -42,6 +44,9 @@ void run_scene(const TickScene& scene, BenchResults& results, const Jobs::Report
         if (tick % 64 == 0 && !report(static_cast<double>(tick) / static_cast<double>(ticks))) break;
     }
     watch.finish(run, result);
+    for (const std::string& notice : run.notices()) results.notes.push_back(notice);
+    if (plan.device)
+        results.device.costs.push_back(cost_of_ticks(setup, ticks, scene.title, report));  // with its clocks on
     if (!run.figures().status.ok)
         results.notes.push_back(fmt::format("{} stopped at tick {}: {} is not finite", scene.scene,
                                             run.figures().status.tick, run.figures().status.field));
@@ -169,7 +174,8 @@ void add_ticks(const BenchPlan& plan, Jobs& jobs, BenchResults& results) {
     }
     for (const TickScene& scene : scenes)
         jobs.add(fmt::format("{}, {} thread{}", scene.title, scene.threads, scene.threads == 1 ? "" : "s"),
-                 scene.weight, [scene, &results](const Jobs::Report& report) { run_scene(scene, results, report); });
+                 plan.device ? 20.0 * scene.weight : scene.weight,
+                 [scene, plan, &results](const Jobs::Report& report) { run_scene(scene, plan, results, report); });
 }
 
 }  // namespace calot::app

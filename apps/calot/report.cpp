@@ -257,8 +257,9 @@ std::string details(const RunRecord& r, const RunPlan& plan) {
                                       grouped(r.last.links_severed), grouped(r.phyxels_removed)));
     run += row("surface", fmt::format("{} triangles, {}", grouped(static_cast<std::int64_t>(r.surface_triangles)),
                                       r.surface_closed ? "closed" : "<span class=\"bad\">not closed</span>"));
-    run += row("computing", fmt::format("tick {:.3f} ms median, {:.3f} ms at 99 %; {} threads; {:.1f} s in all",
-                                        r.tick_us.at(0.5) * 1e-3, r.tick_us.at(0.99) * 1e-3, r.threads, r.wall_s));
+    run += row("computing", fmt::format("tick {:.3f} ms median, {:.3f} ms at 99 %; {}, {} threads; {:.1f} s in all",
+                                        r.tick_us.at(0.5) * 1e-3, r.tick_us.at(0.99) * 1e-3, escaped(r.backend),
+                                        r.threads, r.wall_s));
     for (int k = 0; k < simulation::kStages; ++k)
         run += row(fmt::format("· {}", simulation::kStageNames[k]),
                    fmt::format("{:.1f} µs mean",

@@ -157,6 +157,7 @@ RunRecord perform(const RunPlan& plan) {
             if (!ok) break;
         }
         progress.finish();
+        record.backend = run.backend().name();
         for (const std::string& notice : run.notices()) record.notes.push_back(notice);
         watch.look(run.model(), run.state(), run.time_s());
         record.injuries = watch.injuries();

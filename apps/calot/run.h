@@ -44,6 +44,7 @@ struct RunRecord {
     std::string scene;
     std::uint64_t seed = 0;
     int threads = 0;
+    std::string backend;  ///< who computed, at the end
     std::int64_t ticks = 0;
     double duration_s = 0.0;
     bool interrupted = false, stopped_by_observer = false;

@@ -44,6 +44,7 @@ std::string summary_json(const RunRecord& r) {
     j["duration_s"] = r.duration_s;
     j["ticks"] = r.ticks;
     j["threads"] = r.threads;
+    j["backend"] = r.backend;
     j["interrupted"] = r.interrupted;
     j["status"] =
         r.status.ok ? Json("ok") : Json{{"field", r.status.field}, {"cell", r.status.cell}, {"tick", r.status.tick}};

@@ -72,7 +72,6 @@ void Backend::begin(const tissue::Model& model, tissue::State& state, simulation
         rooms_->heat.look_at(model, state);
     });
     surface_is_current_ = true;
-    links_severed_ = -1;
 }
 
 void Backend::step(const tissue::Model& model, tissue::State& state, simulation::Work& work,
@@ -134,17 +133,12 @@ void Backend::fetch_about_breaches(const tissue::Model& model, tissue::State& st
     }
 }
 
-void Backend::fetch_state(const tissue::Model& model, tissue::State& state, simulation::Work& work) {
+void Backend::fetch_state(const tissue::Model&, tissue::State& state, simulation::Work& work) {
     guarded([&] {
         const Rooms& r = *rooms_;
         r.arrays.download(*device_, state);
         r.field.download(state);
         r.heat.temperature_K().download(*device_, std::span<float>(work.thermal.temperature_K));
-        if (links_severed_ != state.links_severed) work.deformation = r.deformation.host_work();
-        links_severed_ = state.links_severed;
-        for (std::size_t e = 0; e < 9; ++e)
-            r.deformation.gradient().download(*device_, std::span<float>(work.deformation.gradient[e]),
-                                              static_cast<std::int64_t>(e) * model.phyxels.cells);
     });
 }
 

@@ -33,7 +33,7 @@ class Backend final : public simulation::Backend {
     void embed_surface(const simulation::Work& work, std::span<Vec3f> world_m,
                        std::span<Mat3f> deformation_gradient) override;
 
-    Device& device() { return *device_; }
+    Device& device() const { return *device_; }
 
   private:
     struct Rooms {
@@ -56,7 +56,6 @@ class Backend final : public simulation::Backend {
     std::unique_ptr<Rooms> rooms_;
     Vertices vertices_;
     bool surface_is_current_ = false;  ///< simulation::Work::surface
-    std::int64_t links_severed_ = -1;  ///< when the rest properties on the host were copied last
 };
 
 }  // namespace calot::gpu

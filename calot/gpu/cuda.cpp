@@ -288,7 +288,7 @@ bool describe(const cuda::Api& api, int ordinal, DeviceInfo& info) {
     info.vendor = "NVIDIA Corporation";
     info.version = fmt::format("CUDA {}.{}, compute capability {}.{}", driver / 1000, driver % 1000 / 10, major, minor);
     info.memory_bytes = info.most_buffer_bytes = bytes;
-    info.is_gpu = true;
+    info.is_gpu = info.has_double = true;
     info.index = ordinal;
     return major >= kCudaCapability;
 }

@@ -245,8 +245,9 @@ void Deformation::prepare_contacts(const State& state, const Exchange& exchange,
     psi_.upload(*device_, {contact.psi.data(), points_.size() * static_cast<std::size_t>(contact.stride)});
     device_->launch(couple_points_, std::int64_t{contact_.points} * deformation::kMaxPoints * kContactLanes,
                     kContactGroup, contact_, device_points_, rows_, psi_, mass_, coupling_);
-    device_->launch(place_held_, contact_.points, kGroup, contact_, device_points_, rows_, psi_,
-                    arrays_->displacement_m);
+    if (contact.points.back().held())  // held ones come last
+        device_->launch(place_held_, contact_.points, kGroup, contact_, device_points_, rows_, psi_,
+                        arrays_->displacement_m);
 }
 
 void Deformation::advance(const State& state, const Exchange& exchange) {
@@ -314,12 +315,16 @@ void Deformation::embed_points(std::span<const Vec3f> rest_m, std::span<const st
                                std::span<Vec3f> world_m) {
     if (rest_m.empty()) return;
     const auto count = static_cast<std::int64_t>(rest_m.size());
-    DeviceArray<float> rest(*device_, 3 * count), world(*device_, 3 * count);
-    const DeviceArray<std::int32_t> owners = list_on(*device_, {owner.begin(), owner.end()});
-    const DeviceArray<std::int32_t> number = list_on(*device_, {static_cast<std::int32_t>(count)});
-    device_->write(rest.buffer(), rest_m.data(), rest_m.size_bytes());
-    embed_points(rest, owners, number, count, world);
-    device_->read(world.buffer(), world_m.data(), world_m.size_bytes());
+    if (few_world_m_.size() < 3 * count) {
+        few_rest_m_ = DeviceArray<float>(*device_, 6 * count);
+        few_world_m_ = DeviceArray<float>(*device_, 6 * count);
+        few_count_ = DeviceArray<std::int32_t>(*device_, 1);
+    }
+    const auto number = static_cast<std::int32_t>(count);
+    few_count_.upload(*device_, {&number, 1});
+    device_->write(few_rest_m_.buffer(), rest_m.data(), rest_m.size_bytes());
+    embed_points(few_rest_m_, list_of(owner), few_count_, count, few_world_m_);
+    device_->read(few_world_m_.buffer(), world_m.data(), world_m.size_bytes());
 }
 
 std::uint64_t Deformation::bytes() const {
@@ -337,6 +342,7 @@ std::uint64_t Deformation::bytes() const {
                                  &near_list_.buffer(),     &near_counts_.buffer(),
                                  &near_mask_.buffer(),     &near_found_.buffer(),
                                  &near_out_.buffer(),      &numbers_,
+                                 &few_rest_m_.buffer(),    &few_world_m_.buffer(),
                                  &cells_.buffer(),         &values_.buffer()})
         total += buffer->bytes();
     return total;

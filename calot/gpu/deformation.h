@@ -55,9 +55,10 @@ class Deformation {
     const DeviceArray<float>& gradient() const { return gradient_; }    ///< G, [9][phyxels.cells]
 
     // For tests and figures.
-    /// What the host keeps: bits and rest properties are current, what moves is not.
+    /// What the host keeps: bits, link words, moments and mirrors are current, nothing else.
     const deformation::Work& host_work() const { return host_; }
     const DeviceArray<float>& moment_stress() const { return moment_stress_; }  ///< M, [9][phyxels.cells]
+    const DeviceArray<float>& rest() const { return rest_; }                    ///< [REST_PLANES][phyxels.cells]
     const DeviceArray<float>& mass() const { return mass_; }                    ///< [MASS_PLANES][phyxels.cells]
     std::uint64_t bytes() const;
 
@@ -105,14 +106,17 @@ class Deformation {
     DeviceArray<std::uint32_t> capsules_;
     DeviceArray<std::int32_t> is_near_, near_list_, near_total_, near_counts_, near_hexel_total_;
     DeviceArray<std::uint32_t> near_mask_, near_found_, near_out_;  ///< the last two: GpuNearHexel
+    std::vector<GpuNearHexel> found_;
     std::int64_t most_near_phyxels_ = 0, most_near_hexels_ = 0;
 
-    std::vector<std::int32_t> torn_;   ///< phyxels of the last tick, ascending
-    Buffer numbers_;                   ///< NUMBER_*, real
-    std::vector<std::int64_t> noted_;  ///< scratch: cells
-    std::vector<std::int32_t> list_;   ///< scratch
-    DeviceArray<std::int32_t> cells_;  ///< scratch: lists of cells from the host
-    DeviceArray<float> values_;        ///< scratch
+    std::vector<std::int32_t> torn_;               ///< phyxels of the last tick, ascending
+    Buffer numbers_;                               ///< NUMBER_*, real
+    std::vector<std::int64_t> noted_;              ///< scratch: cells
+    std::vector<std::int32_t> list_;               ///< scratch
+    DeviceArray<std::int32_t> cells_;              ///< scratch: lists of cells from the host
+    DeviceArray<float> values_;                    ///< scratch
+    DeviceArray<float> few_rest_m_, few_world_m_;  ///< of embed_points for the host
+    DeviceArray<std::int32_t> few_count_;
 };
 
 }  // namespace calot::gpu

@@ -75,7 +75,7 @@ void Deformation::find_near(tissue::Exchange& exchange, const deformation::NearR
     device_->write(capsules_.buffer(), &list, sizeof(list));
 
     Arrays& a = *arrays_;
-    std::vector<GpuNearHexel> found;
+    std::vector<GpuNearHexel>& found = found_;
     for (;;) {
         const GpuNear k = near_parameters(capsules);
         device_->launch(near_phyxels_, k.active, kGroup, k, capsules_, active_, a.phyxel_present, phyxel_centres_,

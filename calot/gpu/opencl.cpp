@@ -16,6 +16,8 @@ namespace {
 
 /// Writes of up to so many bytes are staged, so that nobody waits for them.
 constexpr std::size_t kMostStaged = 256 * 1024;
+/// The largest work-group that kernels are launched in.
+constexpr std::size_t kMostGroup = 256;
 /// Bytes staged at most before the queue is waited for.
 constexpr std::size_t kMostStagedTogether = 32 * 1024 * 1024;
 
@@ -135,7 +137,9 @@ std::vector<cl_device_id> devices_of(cl_platform_id platform) {
 bool usable(cl_device_id device) {
     return number<cl_bool>(device, CL_DEVICE_AVAILABLE) == CL_TRUE &&
            number<cl_bool>(device, CL_DEVICE_COMPILER_AVAILABLE) == CL_TRUE &&
-           number<cl_bool>(device, CL_DEVICE_ENDIAN_LITTLE) == CL_TRUE;
+           number<cl_bool>(device, CL_DEVICE_ENDIAN_LITTLE) == CL_TRUE &&
+           number<std::size_t>(device, CL_DEVICE_MAX_WORK_GROUP_SIZE) >= kMostGroup &&
+           text(device, CL_DEVICE_PROFILE) == "FULL_PROFILE";
 }
 
 class OpenClDevice final : public Device {

@@ -31,7 +31,8 @@ class Backend {
     /// One tick. What of State is no array, presence of hexels, and of Work exchange, effects and times are current
     /// afterwards; the rest may lag until it is fetched.
     virtual void step(const tissue::Model& model, tissue::State& state, Work& work, const tissue::Input& input) = 0;
-    /// Brings State, temperatures and what embedding reads (deformation::Work) up to date.
+    /// Brings State and Work::thermal's temperatures up to date. What else Work holds of the rooms that compute is the
+    /// processor's own.
     virtual void fetch_state(const tissue::Model& model, tissue::State& state, Work& work) = 0;
     /// Brings Work::surface up to date.
     virtual void fetch_surface(const tissue::Model& model, const tissue::State& state, Work& work) = 0;

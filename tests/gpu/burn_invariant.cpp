@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calot/anatomy/block.h"
+#include "calot/deformation/embedding.h"
 #include "calot/gpu/backend.h"
 #include "calot/gpu/choose.h"
 #include "calot/simulation/simulation.h"
@@ -119,6 +120,16 @@ TEST(WholeBurn, IsOneThatTheCpuMakesToo) {
     surface::Surface fresh(on_gpu.model());
     fresh.rebuild(on_gpu.model(), on_gpu.state());
     EXPECT_EQ(on_gpu.surface().rest_mesh().index, fresh.rest_mesh().index);
+
+    // And its vertices hang on the tissue as the CPU would hang them on this state.
+    simulation::WorldSurface seen;
+    on_gpu.world_surface(seen);
+    const deformation::Work work = deformation::make_work(on_gpu.model(), on_gpu.state());
+    std::vector<Vec3f> expected_m(seen.position_m.size());
+    deformation::embed_points(on_gpu.model(), on_gpu.state(), work, on_gpu.surface().smooth_mesh().position_m,
+                              on_gpu.surface().owner(), expected_m);
+    for (std::size_t v = 0; v < expected_m.size(); ++v)
+        ASSERT_LT(glm::distance(seen.position_m[v], expected_m[v]), 1e-7f) << v;
 }
 
 // Without current nothing is spread otherwise: forces and places are the CPU's to rounding.

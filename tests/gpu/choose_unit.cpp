@@ -57,4 +57,17 @@ TEST(Choose, TooLittleMemoryMeansTheCpu) {
     EXPECT_NE(run.notices()[0].find("MB of memory, the scene needs about"), std::string::npos) << run.notices()[0];
 }
 
+TEST(Choose, ADeviceThatIsGoneMeansTheCpu) {
+    auto setup = simulation::burnt_block_setup();
+    BackendChoice choice;
+    choice.device = test_device()->info();
+    choice.device->platform = 99;
+    use_backend(choice, *setup);
+    simulation::Simulation run(setup);
+    EXPECT_TRUE(run.tick(setup->script.at(0.0)));
+    EXPECT_EQ(run.backend().name(), "CPU");
+    ASSERT_EQ(run.notices().size(), 1u);
+    EXPECT_NE(run.notices()[0].find("is gone"), std::string::npos) << run.notices()[0];
+}
+
 }  // namespace calot::gpu

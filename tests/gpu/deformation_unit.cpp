@@ -182,6 +182,22 @@ TEST(GpuDeformation, FindsTheSameHexelsNear) {
     }
 }
 
+// More phyxels than there is room for at first.
+TEST(GpuDeformation, MakesRoomForAllThatIsNear) {
+    Body body(block({13, 12, 9}, true));
+    shake(body, 0.02, 0.1, 3);
+    Twin twin(body);
+    ASSERT_GT(body.state.phyxel_present.count(), 1200);
+    for (tissue::Exchange* exchange : {&body.exchange, &twin.exchange}) exchange->capsules = {rod_over(body, 5e-3)};
+    deformation::find_near(body.model, body.state, body.exchange, body.work, 50e-3);
+    for (int time = 0; time < 2; ++time) {
+        twin.deformation.find_near(twin.exchange, 50e-3);
+        ASSERT_EQ(twin.exchange.near.size(), body.exchange.near.size());
+        for (std::size_t k = 0; k < twin.exchange.near.size(); ++k)
+            ASSERT_EQ(twin.exchange.near[k].hexel, body.exchange.near[k].hexel);
+    }
+}
+
 TEST(GpuDeformation, FindsNothingNearWithoutInstruments) {
     Body body(block({3, 3, 3}, true));
     Twin twin(body);

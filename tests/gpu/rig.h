@@ -10,10 +10,13 @@
 
 namespace calot::gpu {
 
-inline std::shared_ptr<Device> test_device() {
+/// `in_double` = false: as if the device had no double precision.
+inline std::shared_ptr<Device> test_device(bool in_double = true) {
     const bool wants_gpu = std::getenv("CALOT_TEST_GPU") != nullptr;
-    for (const DeviceInfo& info : devices())
+    for (DeviceInfo info : devices()) {
+        info.has_double = info.has_double && in_double;
         if (info.is_gpu == wants_gpu) return Device::open(info);
+    }
     throw DeviceError("no device to test on: is pocl-opencl-icd installed?");
 }
 

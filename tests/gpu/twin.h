@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calot/deformation/carriers.h"
 #include "calot/deformation/embedding.h"
+#include "calot/deformation/ghosts.h"
 #include "calot/deformation/grasp.h"
 #include "calot/deformation/tear.h"
 #include "calot/deformation/topology.h"
@@ -29,14 +31,18 @@ inline double difference(std::span<const float> a, std::span<const float> b) {
 
 struct Twin {
     deformation::rig::Body& cpu;
-    std::shared_ptr<Device> device = test_device();
+    std::shared_ptr<Device> device;
     tissue::State state;  ///< the host's part of the device's run
     tissue::Exchange exchange;
     Arrays arrays;
     Deformation deformation;
 
-    explicit Twin(deformation::rig::Body& body)
-        : cpu(body), state(body.state), arrays(*device, body.model), deformation(device, body.model, arrays) {
+    explicit Twin(deformation::rig::Body& body, std::shared_ptr<Device> on = test_device())
+        : cpu(body),
+          device(std::move(on)),
+          state(body.state),
+          arrays(*device, body.model),
+          deformation(device, body.model, arrays) {
         tissue::reserve_exchange(cpu.model, cpu.exchange);
         tissue::reserve_exchange(cpu.model, exchange);
         arrays.upload(*device, state);
@@ -44,7 +50,7 @@ struct Twin {
     }
 
     /// Of relative differences: none where the device rounds as the CPU does.
-    double tolerance() const { return device->info().is_gpu ? 1e-5 : 0.0; }
+    double tolerance() const { return device->info().is_gpu || !device->info().has_double ? 1e-5 : 0.0; }
 
     void advance() {
         deformation.advance(state, exchange);
@@ -62,6 +68,55 @@ struct Twin {
         std::vector<float> data(static_cast<std::size_t>(cpu.model.phyxels.cells));
         array.download(*device, std::span<float>(data), plane * cpu.model.phyxels.cells);
         return data;
+    }
+
+    /// The same in rest properties and masses.
+    double difference_of_rest() {
+        double most = 0.0;
+        auto compare = [&](const Array<float>& expected, const DeviceArray<float>& array, int k) {
+            most = std::max(most, difference(expected, plane(array, k)));
+        };
+        const deformation::Work& work = cpu.work;
+        for (int e = 0; e < 6; ++e)
+            compare(work.moment_inverse[static_cast<std::size_t>(e)], deformation.rest(), REST_MOMENT_INVERSE + e);
+        for (int c = 0; c < 3; ++c)
+            compare(work.step_sum[static_cast<std::size_t>(c)], deformation.rest(), REST_STEP_SUM + c);
+        compare(work.volume_m3, deformation.rest(), REST_VOLUME);
+        compare(work.hourglass, deformation.rest(), REST_HOURGLASS);
+        compare(work.lame_mu_Pa, deformation.rest(), REST_MU);
+        compare(work.lame_lambda_Pa, deformation.rest(), REST_LAMBDA);
+        compare(work.pull_N_per_m2, deformation.rest(), REST_PULL);
+        compare(work.weighing_mass_kg, deformation.mass(), MASS_WEIGHING);
+        compare(work.moving_mass_kg, deformation.mass(), MASS_MOVING);
+        Array<float> stable_kg = work.stable_mass_kg;
+        for (std::int64_t p = cpu.model.phyxels.first; p < cpu.model.phyxels.last; ++p)
+            if (cpu.model.phyxel_ghost.test(p)) stable_kg[static_cast<std::size_t>(p)] = 0.0f;  // they have no mass
+        compare(stable_kg, deformation.mass(), MASS_STABLE);
+        return most;
+    }
+
+    /// Cells whose words differ from what the CPU has.
+    std::int64_t wrong_words() {
+        const std::vector<std::uint32_t> words = deformation.words().download(*device);
+        const std::int64_t cells = cpu.model.phyxels.cells;
+        auto word = [&](int plane, std::int64_t p) { return words[static_cast<std::size_t>(plane * cells + p)]; };
+        std::int64_t wrong = 0;
+        for (std::int64_t p = cpu.model.phyxels.first; p < cpu.model.phyxels.last; ++p) {
+            const auto i = static_cast<std::size_t>(p);
+            std::uint32_t carriers = 0, mirrored = 0;
+            const deformation::Carriers found = deformation::find_carriers(cpu.model, cpu.state, cpu.work, p);
+            for (std::size_t n = 0; n < static_cast<std::size_t>(found.count); ++n) carriers |= 1u << found.cell[n];
+            if (cpu.model.phyxel_ghost.test(p)) {
+                const deformation::Mirror& mirror = deformation::find_mirror(cpu.work, p);
+                for (std::size_t n = 0; n < static_cast<std::size_t>(mirror.count); ++n)
+                    for (std::size_t k = 0; k < 27; ++k)
+                        if (p + cpu.work.neighbour_offset[k] == mirror.phyxel[n]) mirrored |= 1u << k;
+            }
+            const std::uint64_t occupancy = word(WORD_OCCUPANCY, p) | std::uint64_t{word(WORD_OCCUPANCY + 1, p)} << 32;
+            wrong += word(WORD_LINKS, p) != cpu.work.link_word[i] || word(WORD_CARRIERS, p) != carriers ||
+                     word(WORD_MIRROR, p) != mirrored || occupancy != cpu.work.occupancy[i];
+        }
+        return wrong;
     }
 
     /// Largest relative difference in what moves, in gradients and stresses. Gradients are compared where tissue or a

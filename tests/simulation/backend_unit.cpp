@@ -43,12 +43,11 @@ class Elsewhere final : public Backend {
         work.smoke = work_->smoke;
         work.bleeding = work_->bleeding;
     }
-    void fetch_state(const tissue::Model& model, tissue::State& state, Work& work) override {
+    void fetch_state(const tissue::Model&, tissue::State& state, Work& work) override {
         if (record_.fetch_fails) throw BackendError("it does not answer");
         ++record_.state_fetches;
         state = state_;
         work.thermal.temperature_K = work_->thermal.temperature_K;
-        work.deformation = deformation::make_work(model, state);
     }
     void fetch_surface(const tissue::Model& model, const tissue::State&, Work& work) override {
         ++record_.surface_fetches;
@@ -151,6 +150,8 @@ TEST(Backend, NothingIsLostWhenItFails) {
 
 TEST(Backend, WithoutOneTheProcessorComputes) {
     auto setup = burnt_block_setup();
+    std::string told;
+    setup->tell = [&told](const std::string& notice) { told = notice; };
     setup->backend = [](const simulation::Setup&) -> std::unique_ptr<Backend> {
         throw BackendError("there is no such device");
     };
@@ -160,6 +161,7 @@ TEST(Backend, WithoutOneTheProcessorComputes) {
     EXPECT_EQ(tissue::hash(run.state()), tissue::hash(on_cpu.state()));
     ASSERT_EQ(run.notices().size(), 1u);
     EXPECT_NE(run.notices()[0].find("there is no such device"), std::string::npos);
+    EXPECT_EQ(told, run.notices()[0]);
 }
 
 }  // namespace calot::simulation

@@ -1,9 +1,9 @@
 #include "language.h"
 #include "types.h"
 
-// Contacts of instruments and what a grasper holds, inside a substep (deformation/contact.h has the law; sums run in the
-// order of deformation/contact_reference.cpp). The host says which points there are and which phyxels carry them: rows of
-// `psi`, a line for each point. One group of 256 items solves all of them.
+// Contacts of instruments and what a grasper holds, inside a substep (deformation/contact.h has the law; sums run in
+// the order of deformation/contact_reference.cpp). The host says which points there are and which phyxels carry them:
+// rows of `psi`, a line for each point. One group of 256 items solves all of them.
 
 #define MOST_POINTS 48  // deformation::kMaxPoints
 #define LANES 16        // deformation::kContactLanes
@@ -52,10 +52,25 @@ KERNEL void place_held(struct GpuContact k, GLOBAL struct GpuContactPoint* point
 
 FN float dot3(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+// What a point's law asks for, close at hand.
+#define LAW_WORDS 12
+struct Law {
+    float normal[3], tool_velocity[3], stiffness, gap, most_force, away[3];
+};
+
 /// One point's law, with all other points as they are (deformation/contact_law.h).
-FN void impulse_of(struct GpuContactPoint p, const float* velocity, const float* before, float coupling, float friction,
+FN void impulse_of(const LOCAL float* law, const float* velocity, const float* before, float coupling, float friction,
                    float dt, float* impulse) {
+    struct Law p;
     float relative[3], wanted[3];
+    for (int r = 0; r < 3; ++r) {
+        p.normal[r] = law[r];
+        p.tool_velocity[r] = law[3 + r];
+        p.away[r] = law[9 + r];
+    }
+    p.stiffness = law[6];
+    p.gap = law[7];
+    p.most_force = law[8];
     for (int r = 0; r < 3; ++r) relative[r] = velocity[r] - p.tool_velocity[r];
     if (p.normal[0] == 0.0f && p.normal[1] == 0.0f && p.normal[2] == 0.0f) {  // held
         const float factor = -p.stiffness * dt / (1.0f + p.stiffness * dt * dt * coupling);
@@ -97,6 +112,8 @@ KERNEL void solve_contacts(struct GpuContact k, int sweeps, GLOBAL struct GpuCon
     SHARED float partial[CONTACT_GROUP];
     SHARED float velocity[3 * MOST_POINTS];
     SHARED float impulse[3 * MOST_POINTS];
+    SHARED float law[LAW_WORDS * MOST_POINTS];
+    SHARED float own_coupling[MOST_POINTS];
     SHARED float more[3];
     const int item = LOCAL_ID, lane = item % LANES;
 
@@ -114,7 +131,16 @@ KERNEL void solve_contacts(struct GpuContact k, int sweeps, GLOBAL struct GpuCon
         BARRIER;
     }
     if (item < k.points) {
-        for (int r = 0; r < 3; ++r) impulse[r * MOST_POINTS + item] = points[item].impulse[r];
+        for (int r = 0; r < 3; ++r) {
+            impulse[r * MOST_POINTS + item] = points[item].impulse[r];
+            law[LAW_WORDS * item + r] = points[item].normal[r];
+            law[LAW_WORDS * item + 3 + r] = points[item].tool_velocity[r];
+            law[LAW_WORDS * item + 9 + r] = points[item].away[r];
+        }
+        law[LAW_WORDS * item + 6] = points[item].stiffness;
+        law[LAW_WORDS * item + 7] = points[item].gap;
+        law[LAW_WORDS * item + 8] = points[item].most_force;
+        own_coupling[item] = coupling[item * MOST_POINTS + item];
     }
     BARRIER;
 
@@ -128,14 +154,15 @@ KERNEL void solve_contacts(struct GpuContact k, int sweeps, GLOBAL struct GpuCon
 
     for (int turn = 0; turn < sweeps * k.points; ++turn) {
         const int c = turn % k.points;
-        const float own = coupling[c * MOST_POINTS + c];
         if (item == 0) {
+            const float own = own_coupling[c];
             float at[3], before[3], after[3];
             for (int r = 0; r < 3; ++r) {
                 at[r] = velocity[r * MOST_POINTS + c];
                 before[r] = after[r] = impulse[r * MOST_POINTS + c];
             }
-            if (own > 0.0f) impulse_of(points[c], at, before, own, k.friction, k.substep_s, after);  // else nothing moves
+            if (own > 0.0f)  // else nothing that moves carries it
+                impulse_of(law + LAW_WORDS * c, at, before, own, k.friction, k.substep_s, after);
             for (int r = 0; r < 3; ++r) {
                 more[r] = after[r] - before[r];
                 impulse[r * MOST_POINTS + c] = after[r];

@@ -8,6 +8,12 @@
 //   raise_masses                                           once
 //   motion, return_ghost_impulses, (contact.cl),
 //   move_ghosts, gradients                                 every substep
+//
+// What a phyxel costs, once each value is read from memory once and then from caches (without: 91 and 102 values read):
+//
+//                read          written                  additions and subtractions / multiplications
+//   motion       21 floats     6                        100 / 40
+//   gradients    17 floats     12, 22 where `whole`     280 / 170
 
 #define FACE_WEIGHT 27.0f  // deformation/links.h; edges weigh 1
 #define STIFFER 0.5f       // deformation/kernel.h
@@ -16,7 +22,8 @@
 
 /// Masses for tissue as it is deformed now, and an empty report.
 KERNEL void raise_masses(struct GpuSweep s, GLOBAL const int* active, int count, GLOBAL const uint* present,
-                         GLOBAL const uint* words, GLOBAL const float* stiffening, GLOBAL float* mass, GLOBAL int* report) {
+                         GLOBAL const uint* words, GLOBAL const float* stiffening, GLOBAL float* mass,
+                         GLOBAL int* report) {
     const int item = GLOBAL_ID;
     if (item == 0) {
         report[0] = 0x7fffffff;
@@ -177,9 +184,9 @@ FN float find_stretch(struct GpuSweep s, const float* g, const float* cofactor_f
 /// G and M of the cells of a list. `whole`: G is stored, also of ghosts, for whoever embeds points, and how far tissue
 /// stretches; 2 = also reported: the lowest cell whose displacement is not finite, and which tissue tears.
 KERNEL void gradients(struct GpuSweep s, GLOBAL const int* cells, int count, int whole, GLOBAL const uint* present,
-                      GLOBAL const uint* ghost, GLOBAL const uint* words, GLOBAL const float* rest, GLOBAL const float* u,
-                      GLOBAL float* gradient, GLOBAL float* moment_stress, GLOBAL float* own_force,
-                      GLOBAL float* stiffening, GLOBAL int* report, int room) {
+                      GLOBAL const uint* ghost, GLOBAL const uint* words, GLOBAL const float* rest,
+                      GLOBAL const float* u, GLOBAL float* gradient, GLOBAL float* moment_stress,
+                      GLOBAL float* own_force, GLOBAL float* stiffening, GLOBAL int* report, int room) {
     const int item = GLOBAL_ID;
     if (item >= count) return;
     const int i = cells[item], n = s.phyxels.cells;
@@ -280,7 +287,8 @@ KERNEL void motion(struct GpuSweep s, GLOBAL const int* active, int count, GLOBA
 
 // ---- Ghosts (deformation/ghosts.h)
 
-/// Hands the impulses in the ghosts' velocities on to the phyxels that they mirror, which have moved. `beside`: phyxels beside ghosts.
+/// Hands the impulses in the ghosts' velocities on to the phyxels that they mirror, which have moved. `beside`: phyxels
+/// beside ghosts.
 KERNEL void return_ghost_impulses(struct GpuSweep s, GLOBAL const int* beside, int count, GLOBAL const uint* present,
                                   GLOBAL const uint* words, GLOBAL const float* mass, GLOBAL float* v,
                                   GLOBAL float* u) {

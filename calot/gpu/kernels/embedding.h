@@ -34,7 +34,8 @@ FN void carrier_field(struct GpuEmbedding e, GLOBAL const float* u, GLOBAL const
     const float s = e.phyxels.spacing_m;
     const float x = s * (float)(k % 3 - 1), y = s * (float)(k / 3 % 3 - 1), z = s * (float)(k / 9 - 1);
     for (int r = 0; r < 3; ++r) {
-        const float gx = gradient[3 * r * n + j], gy = gradient[(3 * r + 1) * n + j], gz = gradient[(3 * r + 2) * n + j];
+        const float gx = gradient[3 * r * n + j], gy = gradient[(3 * r + 1) * n + j],
+                    gz = gradient[(3 * r + 2) * n + j];
         field[r] = u[r * n + j] - (gx * x + gy * y + gz * z);
         field[3 + 3 * r] = gx;
         field[4 + 3 * r] = gy;
@@ -57,8 +58,8 @@ FN float carrier_weight(struct GpuEmbedding e, const float* r, int k) {
     return embedding_kernel(e, x * x + y * y + z * z);
 }
 
-/// The blended field about a point of `owner`, a phyxel; `r` = the point from the owner's centre, in spacings. Returns 0
-/// where nothing carries it. Orders of sums are the host's: the owner, face and edge neighbours, corners.
+/// The blended field about a point of `owner`, a phyxel; `r` = the point from the owner's centre, in spacings. Returns
+/// 0 where nothing carries it. Orders of sums are the host's: the owner, face and edge neighbours, corners.
 FN int blend_field(struct GpuEmbedding e, GLOBAL const uint* words, GLOBAL const float* u, GLOBAL const float* gradient,
                    int owner, const float* r, float* sum) {
     const uint corners = 0x05140145u;  // cells 0 2 6 8 18 20 24 26
@@ -96,7 +97,8 @@ FN void deformation_gradient(const float* f, float* F) {
             F[3 * column + row] = row == column ? 1.0f + f[3 + 3 * row + column] : f[3 + 3 * row + column];
 }
 
-/// Places a material point in the world. `field` is left for deformation_gradient; zeros where nothing carries the point.
+/// Places a material point in the world. `field` is left for deformation_gradient; zeros where nothing carries the
+/// point.
 FN void embed_point(struct GpuEmbedding e, GLOBAL const float* centres, GLOBAL const uint* words, GLOBAL const float* u,
                     GLOBAL const float* gradient, int owner, const float* rest, float* world, float* field) {
     float centre[3], r[3], moved[3];

@@ -1,14 +1,14 @@
 // One kernel source, two languages: OpenCL C 1.2 and CUDA C++. Every source includes this file first and keeps to what
-// both have: no vector types, no float atomics, structs of 32-bit members only. `real` is double where the device has it
-// (DeviceInfo::has_double), else float: for what few items compute, and only there.
+// both have: no vector types, no float atomics, structs of 32-bit members only. `real` is double where the device has
+// it (DeviceInfo::has_double), else float: for what few items compute, and only there.
 //
 //   KERNEL void add(GLOBAL const float* a, GLOBAL float* b, int count) {
 //       const int i = GLOBAL_ID;
 //       if (i < count) b[i] += a[i];
 //   }
 //
-// SHARED arrays, one for each group, are declared at the beginning of a kernel with a constant size; pointers to them are
-// LOCAL. Every item of a group comes to every BARRIER.
+// SHARED arrays, one for each group, are declared at the beginning of a kernel with a constant size; pointers to them
+// are LOCAL. Every item of a group comes to every BARRIER.
 
 #ifndef CALOT_LANGUAGE_H
 #define CALOT_LANGUAGE_H

@@ -5,9 +5,9 @@
 #include "embedding.h"
 #include "scan_group.h"
 
-// Surface hexels near the instruments, in the world (deformation/near.cpp): phyxels whose moved centres are near, listed
-// by prefix sums; then a group of 64 items for each, an item for each of its hexels; then those within reach are listed
-// in the order of phyxels and of hexels within them.
+// Surface hexels near the instruments, in the world (deformation/near.cpp): phyxels whose moved centres are near,
+// listed by prefix sums; then a group of 64 items for each, an item for each of its hexels; then those within reach are
+// listed in the order of phyxels and of hexels within them.
 
 #define HEXELS 64
 
@@ -160,8 +160,8 @@ KERNEL void near_hexels(struct GpuNear k, GLOBAL const struct GpuCapsules* capsu
     }
 }
 
-/// Lists what was found, from out[2] on; `before` is the prefix sum of the counts. out[0] and out[1] say how many hexels
-/// and phyxels there are.
+/// Lists what was found, from out[2] on; `before` is the prefix sum of the counts. out[0] and out[1] say how many
+/// hexels and phyxels there are.
 KERNEL void list_hexels(struct GpuNear k, GLOBAL const int* total, GLOBAL const int* hexels, GLOBAL const uint* mask,
                         GLOBAL const int* before, GLOBAL const struct GpuNearHexel* found,
                         GLOBAL struct GpuNearHexel* out) {
@@ -174,6 +174,7 @@ KERNEL void list_hexels(struct GpuNear k, GLOBAL const int* total, GLOBAL const 
     const uint low = mask[2 * place], high = mask[2 * place + 1];
     const uint own = bit < 32 ? low >> bit : high >> (bit - 32);
     if ((own & 1u) == 0u) return;
-    const int earlier = bit < 32 ? POPCOUNT(low & ((1u << bit) - 1u)) : POPCOUNT(low) + POPCOUNT(high & ((1u << (bit - 32)) - 1u));
+    const int earlier = bit < 32 ? POPCOUNT(low & ((1u << bit) - 1u))
+                                 : POPCOUNT(low) + POPCOUNT(high & ((1u << (bit - 32)) - 1u));
     if (before[place] + earlier < k.most_hexels) out[2 + before[place] + earlier] = found[item];
 }

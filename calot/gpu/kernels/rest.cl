@@ -3,26 +3,22 @@
 #include "lattice.h"
 #include "neighbours.h"
 
-// What phyxels are at rest, where hexels or links changed (deformation/rest.cpp and stable_mass.cpp: their equations and
-// order of operations). An item is a cell; rest properties first, then masses, which ask for those of the neighbours.
-// Few items: real.
+// What phyxels are at rest, where hexels or links changed (deformation/rest.cpp and stable_mass.cpp: their equations
+// and order of operations). An item is a cell; rest properties first, then masses, which ask for those of the
+// neighbours. Few items: real.
 
 #define FACE_WEIGHT ((real)27)  // deformation/links.h; edges weigh 1
 
 /// Calls VISIT(k, weight) for the live links of a word, in the order of deformation::for_each_link.
-#define BOTH_WAYS(k, weight, VISIT)             \
-    if ((links >> (k)) & 1u) VISIT(k, weight)   \
-    if ((links >> (26 - (k))) & 1u) VISIT(26 - (k), weight)
 #define FOR_EACH_LINK(VISIT)                                                                        \
-    BOTH_WAYS(14, FACE_WEIGHT, VISIT)                                                               \
-    BOTH_WAYS(16, FACE_WEIGHT, VISIT)                                                               \
-    BOTH_WAYS(22, FACE_WEIGHT, VISIT)                                                               \
-    BOTH_WAYS(17, (real)1, VISIT)                                                                   \
-    BOTH_WAYS(11, (real)1, VISIT)                                                                   \
-    BOTH_WAYS(23, (real)1, VISIT)                                                                   \
-    BOTH_WAYS(5, (real)1, VISIT)                                                                    \
-    BOTH_WAYS(25, (real)1, VISIT)                                                                   \
-    BOTH_WAYS(7, (real)1, VISIT)
+    for (int number = 0; number < 18; ++number) {                                                   \
+        const int k = ordered_link(number);                                                         \
+        if ((links >> k) & 1u) VISIT(k, (number < 6 ? FACE_WEIGHT : (real)1))                       \
+    }
+FN int ordered_link(int number) {
+    const int order[9] = {14, 16, 22, 17, 11, 23, 5, 25, 7};
+    return number % 2 == 0 ? order[number / 2] : 26 - order[number / 2];
+}
 
 FN void step_of(int k, real* step) {
     step[0] = (real)(k % 3 - 1);
@@ -96,8 +92,8 @@ FN void gradient_of_link(const real* inverse, real weighted_spacing, const real*
     g[2] = inverse[2] * x + inverse[4] * y + inverse[5] * z;
 }
 
-/// Moment, volume, constants, hourglass control and pull of phyxels and ghosts, which phyxels a ghost mirrors, and links
-/// as bit arrays have them. Cells without stress of their own get none.
+/// Moment, volume, constants, hourglass control and pull of phyxels and ghosts, which phyxels a ghost mirrors, and
+/// links as bit arrays have them. Cells without stress of their own get none.
 KERNEL void refresh_rest(struct GpuTopology t, GLOBAL const int* cells, int count, GLOBAL const real* numbers,
                          GLOBAL const uint* present, GLOBAL const uint* ghost, GLOBAL const uchar* material,
                          GLOBAL uint* words, GLOBAL uint* link_bits, GLOBAL float* rest, GLOBAL float* gradient,

@@ -46,5 +46,6 @@ KERNEL void list_bits(GLOBAL const uint* words, int count, GLOBAL const int* bef
     const int i = GLOBAL_ID;
     if (i >= count) return;
     int place = before[i];
-    for (uint rest = words[i]; rest != 0u && place < room; rest &= rest - 1u) list[place++] = 32 * i + POPCOUNT((rest & (0u - rest)) - 1u);
+    for (uint rest = words[i]; rest != 0u && place < room; rest &= rest - 1u)
+        list[place++] = 32 * i + POPCOUNT((rest & (0u - rest)) - 1u);
 }

@@ -3,7 +3,8 @@
 #include "lattice.h"
 #include "neighbours.h"
 
-// Burning changes topology (deformation/topology.h has the rules, holding.h and occupancy.h how they are told on words).
+// Burning changes topology (deformation/topology.h has the rules, holding.h and occupancy.h how they are told on
+// words).
 // An item is a phyxel that lost hexels, or one of its links. Links are bits at both ends: WORD_LINKS. Faces come first,
 // in a kernel of their own, since edges hold where faces do. Searching what hangs on nothing any more follows chains of
 // cells: the host does it, on its own bits, and names the phyxels that fall.
@@ -76,6 +77,9 @@ FN int face_holds(struct GpuTopology t, GLOBAL const uint* ghost, GLOBAL const u
     return (((a & layer(t.high[axis])) >> (t.shift[axis] * (t.hexels_per_edge - 1))) & b) != 0;
 }
 
+/// Links of a cell while others cut some of them.
+FN uint links_now(GLOBAL uint* words, int n, int i) { return ATOMIC_OR(words + WORD_LINKS * n + i, 0u); }
+
 /// Cuts the link towards cell k of the neighbourhood, at both ends.
 FN void cut(struct GpuLattice l, GLOBAL uint* words, int i, int k) {
     ATOMIC_AND(words + WORD_LINKS * l.cells + i, ~(1u << k));
@@ -89,18 +93,18 @@ KERNEL void sever_faces(struct GpuTopology t, GLOBAL const int* touched, int cou
     if (item >= 6 * count) return;
     const int axis = item % 6 / 2, k = axis == 0 ? 14 : axis == 1 ? 16 : 22;  // towards the positive side
     const int below = touched[item / 6] - (item % 2 == 0 ? 0 : t.phyxels.stride[axis]);
-    if (((words[WORD_LINKS * t.phyxels.cells + below] >> k) & 1u) == 0u) return;
+    if (((links_now(words, t.phyxels.cells, below) >> k) & 1u) == 0u) return;
     if (!face_holds(t, ghost, words, below, axis)) cut(t.phyxels, words, below, k);
 }
 
 /// Whether two cells are linked or are both parts of what holds.
-FN int are_connected(struct GpuLattice l, GLOBAL const uint* ghost, GLOBAL const uint* words, int i, int k) {
-    return (int)((words[WORD_LINKS * l.cells + i] >> k) & 1u) ||
+FN int are_connected(struct GpuLattice l, GLOBAL const uint* ghost, GLOBAL uint* words, int i, int k) {
+    return (int)((links_now(words, l.cells, i) >> k) & 1u) ||
            (test_bit(ghost, i) && test_bit(ghost, i + neighbour_offset(l, k)));
 }
 
 /// Whether an edge link may live: one of its two paths over faces does.
-FN int edge_holds(struct GpuLattice l, GLOBAL const uint* ghost, GLOBAL const uint* words, int i, int k) {
+FN int edge_holds(struct GpuLattice l, GLOBAL const uint* ghost, GLOBAL uint* words, int i, int k) {
     const int power[3] = {1, 3, 9};
     const int step[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
     for (int axis = 0; axis < 3; ++axis) {
@@ -122,7 +126,7 @@ KERNEL void sever_edges(struct GpuTopology t, GLOBAL const int* touched, int cou
     const int k = edges[item % 24 / 2], step_x = k % 3 - 1, step_y = k / 3 % 3 - 1;
     int i = touched[item / 24];
     if (item % 2 == 1) i -= step_x != 0 ? step_x * t.phyxels.stride[0] : step_y * t.phyxels.stride[1];
-    if (((words[WORD_LINKS * t.phyxels.cells + i] >> k) & 1u) == 0u) return;
+    if (((links_now(words, t.phyxels.cells, i) >> k) & 1u) == 0u) return;
     if (!edge_holds(t.phyxels, ghost, words, i, k)) cut(t.phyxels, words, i, k);
 }
 
@@ -132,8 +136,9 @@ KERNEL void drop_phyxels(struct GpuTopology t, GLOBAL const int* fallen, int cou
     const int item = GLOBAL_ID;
     if (item >= count) return;
     const int i = fallen[item], n = t.phyxels.cells;
+    const uint links = links_now(words, n, i);
     for (int k = 0; k < NEIGHBOURHOOD; ++k)
-        if ((words[WORD_LINKS * n + i] >> k) & 1u) cut(t.phyxels, words, i, k);
+        if ((links >> k) & 1u) cut(t.phyxels, words, i, k);
     words[WORD_OCCUPANCY * n + i] = words[(WORD_OCCUPANCY + 1) * n + i] = 0u;
     ATOMIC_AND(present + (i >> 5), ~(1u << (i & 31)));
     for (int r = 0; r < 3; ++r) u[r * n + i] = v[r * n + i] = 0.0f;
