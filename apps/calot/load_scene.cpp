@@ -57,6 +57,7 @@ void use_backend(const gpu::BackendWish& wish, simulation::Setup& setup) {
     if (wish.kind == gpu::BackendKind::cpu) return;
     const gpu::BackendChoice choice = gpu::choose_backend(wish, gpu::devices(), setup.model.hexel_initial.count());
     gpu::use_backend(choice, setup);
+    setup.tell = [](const std::string& notice) { fmt::print(stderr, "calot: note: {}\n", notice); };
     fmt::print(stderr, "calot: backend: {}\n", choice.why);
 }
 

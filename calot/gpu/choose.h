@@ -17,8 +17,8 @@ struct BackendWish {
 };
 
 /// With `automatic`, scenes of fewer present hexels stay with the CPU. What rules a small scene's tick on a device is
-/// not its size but some hundred launches of a few microseconds; the CPU's tick takes as long as these from about here
-/// on. (By the model of docs/gpu.md, not by measurement.)
+/// not its size but some thirty launches and a few waits. From here on a desktop's GPU should be some times faster, by
+/// the model of docs/gpu.md. Nothing was measured: little would be no reason.
 inline constexpr std::int64_t kWorthADevice = 1'000'000;
 
 struct BackendChoice {

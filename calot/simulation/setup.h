@@ -39,6 +39,8 @@ struct Setup {
     Script script;
     /// Makes who computes the ticks of a Simulation (backend.h); empty: the processor does. May throw BackendError.
     std::function<std::unique_ptr<Backend>(const Setup&)> backend;
+    /// Told at once when a backend fails (Simulation::notices() keeps it); may be empty.
+    std::function<void(const std::string&)> tell;
 };
 
 }  // namespace calot::simulation

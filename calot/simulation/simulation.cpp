@@ -85,7 +85,7 @@ void Simulation::start_backend() {
         other->begin(setup_->model, state_, work_);
         backend_ = std::move(other);
     } catch (const BackendError& error) {
-        notices_.push_back(std::string("the processor computes: ") + error.what());
+        note(std::string("the processor computes: ") + error.what());
         return;
     }
     if (backend_->keeps_host_current()) return;
@@ -139,12 +139,17 @@ void Simulation::fetch_surface() const {
     }
 }
 
+void Simulation::note(const std::string& notice) const {
+    notices_.push_back(notice);
+    if (setup_->tell) setup_->tell(notice);
+}
+
 /// The processor takes over: from the state that was kept on, once more through the ticks since.
 void Simulation::fall_back(const std::string& why) const {
     const Kept kept = *std::move(kept_);
-    notices_.push_back(backend_->name() + " failed at tick " +
-                       std::to_string(kept.state.tick + static_cast<std::int64_t>(kept.inputs.size())) + " (" + why +
-                       "); the processor goes on, from tick " + std::to_string(kept.state.tick));
+    note(backend_->name() + " failed at tick " +
+         std::to_string(kept.state.tick + static_cast<std::int64_t>(kept.inputs.size())) + " (" + why +
+         "); the processor goes on, from tick " + std::to_string(kept.state.tick));
     backend_ = cpu_backend();
     kept_.reset();
     state_lags_ = surface_lags_ = false;

@@ -98,6 +98,7 @@ class Simulation {
     void fetch_state() const;
     void fetch_surface() const;
     void fall_back(const std::string& why) const;
+    void note(const std::string& notice) const;
 
     std::shared_ptr<const Setup> setup_;
     // Mutable: looking at them may bring them up to date, and show that the backend is lost.

@@ -150,6 +150,8 @@ TEST(Backend, NothingIsLostWhenItFails) {
 
 TEST(Backend, WithoutOneTheProcessorComputes) {
     auto setup = burnt_block_setup();
+    std::string told;
+    setup->tell = [&told](const std::string& notice) { told = notice; };
     setup->backend = [](const simulation::Setup&) -> std::unique_ptr<Backend> {
         throw BackendError("there is no such device");
     };
@@ -159,6 +161,7 @@ TEST(Backend, WithoutOneTheProcessorComputes) {
     EXPECT_EQ(tissue::hash(run.state()), tissue::hash(on_cpu.state()));
     ASSERT_EQ(run.notices().size(), 1u);
     EXPECT_NE(run.notices()[0].find("there is no such device"), std::string::npos);
+    EXPECT_EQ(told, run.notices()[0]);
 }
 
 }  // namespace calot::simulation
