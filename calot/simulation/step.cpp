@@ -3,7 +3,6 @@
 #include "calot/base/parallel.h"
 #include "calot/deformation/embedding.h"
 #include "calot/deformation/integrate.h"
-#include "calot/deformation/settle.h"
 #include "calot/deformation/tear.h"
 #include "calot/deformation/topology.h"
 #include "calot/simulation/step_parts.h"
@@ -32,7 +31,6 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
         "simulation.move_and_heat",
         [&] {
             StageClock moving(work.stage_us);
-            deformation::settle(state);
             deformation::advance(model, state, exchange, work.deformation);
             moving.lap(Stage::deformation);
         },
