@@ -58,7 +58,7 @@ TEST(Gpu, ARunOnADeviceComesToTheSame) {
 TEST(Gpu, AutoSaysWhatItTookAndWhy) {
     const Folder folder("gpu-auto");
     const std::string scene = folder.write("tiny.toml", kTinyScene);
-    const Outcome outcome = run(simulate(scene, folder / "out", {"--backend", "auto", "--frames", "none"}));
+    const Outcome outcome = run(simulate(scene, folder / "out", {"--backend", "auto"}));
     ASSERT_EQ(outcome.code, 0) << outcome.output;
     const bool says_why = outcome.output.find("backend: CPU: there is no GPU") != std::string::npos ||
                           outcome.output.find("too small for a GPU") != std::string::npos;
