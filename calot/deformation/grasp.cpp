@@ -113,6 +113,11 @@ void place_held(const Model& model, const State& state, const tissue::Exchange& 
     }
 }
 
+Vec3 away_at_rest_m(const Model& model, const State& state, const ContactPoint& point) {
+    const Vec3 place_m(state.grasper.place_m[static_cast<std::size_t>(point.near)]);
+    return model.hexels.centre_m(point.hexel) - in_world(state.grasper.pose, place_m);
+}
+
 void place_point(const Model& model, const State& state, const tissue::Exchange& exchange, const Vec3f& moved_m,
                  ContactPoint& point) {
     const Vec3 place_m(state.grasper.place_m[static_cast<std::size_t>(point.near)]);

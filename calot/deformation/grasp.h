@@ -40,6 +40,8 @@ void place_held(const tissue::Model& model, const tissue::State& state, const ti
 /// Says of a held point where it is, moved by so much from rest, and how its place moves.
 void place_point(const tissue::Model& model, const tissue::State& state, const tissue::Exchange& exchange,
                  const Vec3f& moved_m, ContactPoint& point);
+/// From where a held point is held to where it is at rest, before rounding.
+Vec3 away_at_rest_m(const tissue::Model& model, const tissue::State& state, const ContactPoint& point);
 
 /// After the last substep: places that slipped move after their points.
 void slip_held(tissue::State& state, const tissue::Exchange& exchange, const ContactWork& contact);

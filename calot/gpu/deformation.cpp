@@ -226,8 +226,12 @@ void Deformation::prepare_contacts(const State& state, const Exchange& exchange,
     points_.assign(contact.points.size(), {});
     for (std::size_t c = 0; c < points_.size(); ++c) {
         deformation::ContactPoint& point = contact.points[c];
-        if (point.held()) deformation::place_point(*model_, state, exchange, Vec3f(0.0f), point);
         GpuContactPoint& to = points_[c];
+        if (point.held()) {
+            deformation::place_point(*model_, state, exchange, Vec3f(0.0f), point);
+            const Vec3 rest_m = deformation::away_at_rest_m(*model_, state, point) - Vec3(point.away_m);
+            for (int r = 0; r < 3; ++r) to.away_rest[r] = static_cast<float>(rest_m[r]);
+        }
         for (int r = 0; r < 3; ++r) {
             to.normal[r] = point.normal[r];
             to.tool_velocity[r] = point.tool_velocity_m_per_s[r];

@@ -47,7 +47,8 @@ KERNEL void place_held(struct GpuContact k, GLOBAL struct GpuContactPoint* point
         for (int r = 0; r < 3; ++r)
             if (share != 0.0f) moved[r] += share * u[r * k.cells + phyxel[row]];
     }
-    for (int r = 0; r < 3; ++r) points[c].away[r] += moved[r];
+    for (int r = 0; r < 3; ++r)
+        points[c].away[r] = (float)((real)points[c].away[r] + (real)points[c].away_rest[r] + (real)moved[r]);
 }
 
 FN float dot3(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

@@ -86,7 +86,7 @@ struct GpuContactPoint {
     float normal[3];  ///< 0 = held
     float tool_velocity[3];
     float stiffness, gap, most_force;
-    float away[3];
+    float away[3], away_rest[3];  ///< the second: of a held point at rest, what rounding left over
     float impulse[3];
     float sum[3], sum_rest[3];  ///< of impulses since the tick began, and what rounding left over
     int first, end;             ///< rows
