@@ -21,6 +21,11 @@ std::vector<GpuHeatMaterial> materials_of(const tissue::Model& model, const ther
     return all;
 }
 
+/// Into tissue at present.
+double tissue_W(const tissue::JouleHeat& joule) {
+    return joule.size != Int3(0) ? joule.total_W : 0.0;
+}
+
 double pair(float high, float low) {
     return static_cast<double>(high) + static_cast<double>(low);
 }
@@ -145,8 +150,8 @@ void Heat::conduct(const tissue::Model& model, tissue::State& state, const tissu
                    const DeviceArray<float>& joule_S_per_m3) {
     tissue::EnergyBudget& energy = state.energy_J;
     if (exchange.joule.size != Int3(0)) {
-        const double tissue_J = exchange.joule.total_W * model.tick_s,
-                     outflow_J = exchange.joule.outflow_W * model.tick_s;
+        const double outflow_J = exchange.joule.outflow_W * model.tick_s;
+        const double tissue_J = tissue_W(exchange.joule) * model.tick_s;
         energy.outflow += outflow_J;
         energy.transit += tissue_J;
         energy.delivered += tissue_J + outflow_J;
@@ -154,7 +159,7 @@ void Heat::conduct(const tissue::Model& model, tissue::State& state, const tissu
     const int ticks = model.thermal.refresh_ticks, tick = static_cast<int>(state.tick % ticks);
     if (tick != step_tick(ticks)) return;
     const double ahead_s = (ticks - 1 - tick) * model.tick_s;
-    given_J_ = std::max(0.0, energy.transit + exchange.joule.total_W * ahead_s);
+    given_J_ = std::max(0.0, energy.transit + tissue_W(exchange.joule) * ahead_s);
     for (int substep = 0; substep < substeps_; ++substep) {
         enqueue_step(model, state, exchange, joule_S_per_m3);
         if (substep + 1 < substeps_) book(model, state, exchange);
@@ -193,7 +198,7 @@ void Heat::book(const tissue::Model& model, tissue::State& state, const tissue::
     energy.transit -= given_J_;
     energy.outflow += given_J_ - sum_J(HEAT_DELIVERED);  // of hexels that went since the field was solved
     given_J_ = 0.0;
-    if (exchange.joule.total_W <= 0.0 && energy.transit < 0.0) {  // given ahead of a current that has ended
+    if (tissue_W(exchange.joule) <= 0.0 && energy.transit < 0.0) {  // given ahead of a current that has ended
         energy.delivered -= energy.transit;
         energy.transit = 0.0;
     }

@@ -56,8 +56,8 @@ WireContact find_wire_contact(const tissue::Model& model, const tissue::State& s
     for (const tissue::NearHexel& near : exchange.near) touched += touches(model, state, near) ? 1 : 0;
     // Together they cannot touch more of the wire than there is.
     contact.area_m2 = std::min(s * s, contact.wire.area_m2 / static_cast<double>(std::max<std::int64_t>(touched, 1)));
-    contact.film_m2K_per_W = state.tip.char_kg /
-                             (model.electric.char_density_kg_per_m3 * contact.wire.area_m2) / kCharConductivity_W_per_mK;
+    contact.film_m2K_per_W =
+        state.tip.char_kg / (model.electric.char_density_kg_per_m3 * contact.wire.area_m2) / kCharConductivity_W_per_mK;
     return contact;
 }
 

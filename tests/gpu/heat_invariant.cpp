@@ -51,18 +51,18 @@ void compare_burns(tissue::PhaseModel phase) {
         EXPECT_LE(differ, 3) << "of " << b.hexels_burnt << " at tick " << b.tick;
         const tissue::EnergyBudget &e = a.energy_J, &f = b.energy_J;
         expect_alike(e.delivered, f.delivered, 1e-3, "delivered");
-        expect_alike(e.gas, f.gas, 1e-2, "gas");
-        expect_alike(e.latent, f.latent, 1e-2, "latent");
-        expect_alike(e.surface, f.surface, 5e-3, "surface");
-        expect_alike(e.perfusion, f.perfusion, 5e-3, "perfusion");
-        EXPECT_NEAR(e.tip, f.tip, 0.02);
-        EXPECT_NEAR(a.tip.temperature_K, b.tip.temperature_K, 0.5);
+        expect_alike(e.gas, f.gas, 1e-3, "gas");
+        expect_alike(e.latent, f.latent, 1e-3, "latent");
+        expect_alike(e.surface, f.surface, 1e-3, "surface");
+        expect_alike(e.perfusion, f.perfusion, 1e-3, "perfusion");
+        EXPECT_NEAR(e.tip, f.tip, 1e-3);
+        EXPECT_NEAR(a.tip.temperature_K, b.tip.temperature_K, 0.05);
         const auto injured = thermal::injuries(burns.device.model, a),
                    expected = thermal::injuries(burns.host.model, b);
         for (std::size_t m = 0; m < expected.size(); ++m) {
             const auto damaged = static_cast<double>(expected[m].damaged_hexels);
-            EXPECT_NEAR(static_cast<double>(injured[m].damaged_hexels), damaged, 2.0 + 0.01 * damaged);
-            EXPECT_NEAR(injured[m].peak_temperature_K, expected[m].peak_temperature_K, 1.0);
+            EXPECT_NEAR(static_cast<double>(injured[m].damaged_hexels), damaged, 1.0 + 1e-3 * damaged);
+            EXPECT_NEAR(injured[m].peak_temperature_K, expected[m].peak_temperature_K, 0.1);
         }
     }
 }
