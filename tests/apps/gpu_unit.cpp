@@ -58,12 +58,30 @@ TEST(Gpu, ARunOnADeviceComesToTheSame) {
 TEST(Gpu, AutoSaysWhatItTookAndWhy) {
     const Folder folder("gpu-auto");
     const std::string scene = folder.write("tiny.toml", kTinyScene);
-    const Outcome outcome = run(simulate(scene, folder / "out", {"--backend", "auto", "--frames", "none"}));
+    const Outcome outcome = run(simulate(scene, folder / "out", {"--backend", "auto"}));
     ASSERT_EQ(outcome.code, 0) << outcome.output;
     const bool says_why = outcome.output.find("backend: CPU: there is no GPU") != std::string::npos ||
                           outcome.output.find("too small for a GPU") != std::string::npos;
     EXPECT_TRUE(says_why) << outcome.output;
     EXPECT_EQ(run({"simulate", scene, "--backend", "gpu", "--device", "1000"}).code, 2);
+}
+
+TEST(Gpu, BenchTellsLaunchesAndTransfersApart) {
+    const Folder folder("gpu-bench");
+    const Outcome outcome = run({"bench", "--backend", "gpu", "--quick", "--suite", "kernels", "--threads", "1",
+                                 "--progress", "none", "--json", folder / "b.json", "--html", folder / "b.html"});
+    ASSERT_EQ(outcome.code, 0) << outcome.output;
+    const Json device = Json::parse(read_file(folder / "b.json"))["device"];
+    for (const char* key : {"launch_us", "round_trip_us", "up_GB_per_s", "down_GB_per_s", "copy_GB_per_s"})
+        EXPECT_GT(device[key].get<double>(), 0.0) << key;
+    ASSERT_GE(device["costs"].size(), 5u);
+    for (const Json& cost : device["costs"]) {
+        EXPECT_GT(cost["kernels_us"].get<double>(), 0.0) << cost["name"];
+        EXPECT_GT(cost["launches"].get<double>(), 0.0) << cost["name"];
+        EXPECT_FALSE(cost["by_kernel_us"].empty()) << cost["name"];
+    }
+    EXPECT_NE(read_file(folder / "b.html").find("On the device"), std::string::npos);
+    EXPECT_EQ(run({"bench", "--backend", "gpu", "--suite", "paper"}).code, 2) << "that is the CPU's";
 }
 
 }  // namespace
