@@ -1,9 +1,11 @@
 #include "calot/deformation/ghosts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "calot/base/parallel.h"
+#include "calot/deformation/kernel.h"
 #include "calot/deformation/links.h"
 
 namespace calot::deformation {
@@ -12,6 +14,10 @@ namespace {
 
 /// Ghosts of a parallel loop's task: fewer are not worth a second thread.
 constexpr std::int64_t kTaskGhosts = 1536;
+
+float unless_below(float least, float x) {
+    return std::fabs(x) < least ? 0.0f : x;
+}
 
 }  // namespace
 
@@ -143,8 +149,9 @@ void return_ghost_impulses(tissue::State& state, const Work& work, float decay) 
             const auto p = static_cast<std::size_t>(images.phyxel[n]);
             const Vec3f more = -decay * work.inverse_mass_per_kg[p] * impulse_Ns;
             for (std::size_t r = 0; r < 3; ++r) {
-                state.velocity_m_per_s[r][p] += more[static_cast<int>(r)];
-                state.displacement_m[r][p] += work.substep_s * more[static_cast<int>(r)];
+                float &v = state.velocity_m_per_s[r][p], &u = state.displacement_m[r][p];
+                v = unless_below(kRest_m_per_s, v + more[static_cast<int>(r)]);
+                u = unless_below(kNowhere_m, u + work.substep_s * more[static_cast<int>(r)]);
             }
         }
     });

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calot/deformation/kernel.h"
 #include "calot/validation/elastic_rig.h"
 
 namespace calot::deformation::rig {
@@ -106,8 +107,8 @@ TEST(Stability, OfMixedTissues) {
         }
 }
 
-// Subnormal numbers are slow: without an end to ever slower motion, a tick of tissue left alone takes thirty times as
-// long after a second or two.
+// Subnormal numbers are slow: without an end to ever slower motion, a tick of tissue left alone takes up to thirty times
+// as long after a second or two.
 TEST(Stability, TissueThatComesToRestLeavesNoSubnormalNumbers) {
     Body body(block({6, 5, 4}, true));
     shake(body, 0.02, 0.0, 7);
@@ -117,15 +118,21 @@ TEST(Stability, TissueThatComesToRestLeavesNoSubnormalNumbers) {
     double moved = 0.0;
     for (int k = 0; k < 4000; ++k) {
         body.tick();
-        if (k % 100 != 99) continue;
-        for (const auto* fields : {&body.state.displacement_m, &body.state.velocity_m_per_s, &body.work.own_force_N})
-            for (const auto& component : *fields) ASSERT_EQ(subnormal(component), 0) << "tick " << k;
+        if (k == 99) moved = kinetic_energy_J(body.model, body.state, body.work);
+        if (k % 20 != 19) continue;
+        body.for_each_phyxel([&](std::int64_t p) {
+            for (std::size_t r = 0; r < 3; ++r) {
+                const float u = std::fabs(body.state.displacement_m[r][static_cast<std::size_t>(p)]),
+                            v = std::fabs(body.state.velocity_m_per_s[r][static_cast<std::size_t>(p)]);
+                ASSERT_TRUE(u == 0.0f || u >= kNowhere_m) << u << " m in tick " << k;
+                ASSERT_TRUE(v == 0.0f || v >= kRest_m_per_s) << v << " m/s in tick " << k;
+            }
+        });
         for (const auto* fields : {&body.work.gradient, &body.work.moment_stress})
             for (const auto& component : *fields) ASSERT_EQ(subnormal(component), 0) << "tick " << k;
-        if (k == 99) moved = kinetic_energy_J(body.model, body.state, body.work);
     }
     EXPECT_GT(moved, 0.0);
-    EXPECT_LT(kinetic_energy_J(body.model, body.state, body.work), 1e-20 * moved);
+    EXPECT_EQ(kinetic_energy_J(body.model, body.state, body.work), 0.0);
 }
 
 TEST(Stability, WhatIsNoNumberStopsTheRun) {

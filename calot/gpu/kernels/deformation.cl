@@ -310,8 +310,9 @@ KERNEL void return_ghost_impulses(struct GpuSweep s, GLOBAL const int* beside, i
     const float gain = -s.decay * mass[MASS_INVERSE * n + i];
     for (int r = 0; r < 3; ++r) {
         const float more = gain * impulse[r];
-        v[r * n + i] += more;
-        u[r * n + i] += s.substep_s * more;
+        const float velocity = v[r * n + i] + more, moved = u[r * n + i] + s.substep_s * more;
+        v[r * n + i] = FABS(velocity) < s.rest_m_per_s ? 0.0f : velocity;
+        u[r * n + i] = FABS(moved) < s.nowhere_m ? 0.0f : moved;
     }
 }
 
