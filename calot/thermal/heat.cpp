@@ -102,8 +102,9 @@ void look_at_presence(const tissue::Model& model, const tissue::State& state, Wo
     work.groups.refresh(model, state.hexel_present);
 }
 
-/// How much of a step is done before each tick, of 24: little in those that are long for the electric field.
-constexpr std::array<std::uint64_t, 9> kDoneBefore{0, 1, 6, 11, 15, 17, 19, 20, 24};
+/// How much of a step is done before each tick, of 48: less in those that are long for the electric field, for what the
+/// step begins with, or for the surface.
+constexpr std::array<std::uint64_t, 9> kDoneBefore{0, 4, 11, 19, 26, 32, 37, 42, 48};
 
 /// Shares the active blocks out to the ticks of the step. Only those of `counted` count as work.
 void plan_turns(Work& work, const BlockSet& counted) {
