@@ -1,6 +1,7 @@
 #include "calot/effects/bleeding.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "calot/base/random.h"
@@ -27,6 +28,8 @@ constexpr float kThickest_m = 0.6e-3f;
 constexpr float kThinnest_m = 4e-6f;  ///< less cannot be seen
 constexpr float kStays_m = 25e-6f;    ///< clings and does not run
 constexpr float kRunShare = 0.10f;    ///< of what is thicker, each time
+constexpr float kFlattest = 0.15f;    ///< share of a step that goes down: less holds the film
+constexpr float kFuller = 0.4f;       ///< as if ways to where the film is thicker fell by this much less
 constexpr double kSuctionReach_m = 7e-3, kRinseReach_m = 6e-3;
 constexpr float kSuctionTime_s = 0.12f, kRinseTime_s = 0.25f;
 constexpr int kWaterDropsEvery = 3;  ///< ticks
@@ -39,6 +42,34 @@ bool open_to_gas(const tissue::Model& model, const tissue::State& state, std::in
         if (!state.hexel_present.test(hexel - step) || !state.hexel_present.test(hexel + step)) return true;
     return false;
 }
+
+/// A step to a neighbour, and how much of it goes down.
+struct Way {
+    Int3 step{0};
+    float fall = 0.0f;
+};
+
+/// Those that go down at all, the steepest first.
+class WaysDown {
+  public:
+    explicit WaysDown(const Vec3f& down) {
+        for (int z = -1; z <= 1; ++z)
+            for (int y = -1; y <= 1; ++y)
+                for (int x = -1; x <= 1; ++x) {
+                    if (x == 0 && y == 0 && z == 0) continue;
+                    const float fall = glm::dot(glm::normalize(Vec3f(x, y, z)), down);
+                    if (fall > kFlattest) ways_[count_++] = {Int3(x, y, z), fall};
+                }
+        std::sort(ways_.begin(), ways_.begin() + static_cast<std::ptrdiff_t>(count_),
+                  [](const Way& a, const Way& b) { return a.fall > b.fall; });
+    }
+    const Way* begin() const { return ways_.data(); }
+    const Way* end() const { return ways_.data() + count_; }
+
+  private:
+    std::array<Way, 26> ways_;
+    std::size_t count_ = 0;
+};
 
 }  // namespace
 
@@ -202,6 +233,7 @@ void Bleeding::wet(std::int64_t hexel, float thickness_m) {
 /// A film runs to the hexels that lie lower; what is thin clings.
 void Bleeding::run_down(const tissue::Model& model, const tissue::State& state, std::int64_t tick) {
     const Lattice& lattice = model.hexels;
+    const WaysDown ways(down_);
     const auto turn = static_cast<std::size_t>(tick % kRunEvery);
     const std::size_t count = wet_.size();
     for (std::size_t k = turn; k < count; k += kRunEvery) {
@@ -211,18 +243,15 @@ void Bleeding::run_down(const tissue::Model& model, const tissue::State& state, 
         if (film <= kStays_m) continue;
         const Int3 cell = lattice.coordinates(hexel);
         std::int64_t best = -1;
-        float steepest = 0.15f;
-        for (int z = -1; z <= 1; ++z)
-            for (int y = -1; y <= 1; ++y)
-                for (int x = -1; x <= 1; ++x) {
-                    const Int3 at = cell + Int3(x, y, z);
-                    if ((x == 0 && y == 0 && z == 0) || !lattice.contains(at)) continue;
-                    const std::int64_t next = lattice.index(at);
-                    if (!open_to_gas(model, state, next)) continue;
-                    const float fall = glm::dot(glm::normalize(Vec3f(x, y, z)), down_);
-                    const float emptier = film_m_[static_cast<std::size_t>(next)] < film ? 1.0f : 0.4f;
-                    if (fall * emptier > steepest) steepest = fall * emptier, best = next;
-                }
+        float steepest = kFlattest;
+        for (const Way& way : ways) {
+            if (way.fall <= steepest) break;
+            const Int3 at = cell + way.step;
+            if (!lattice.contains(at)) continue;
+            const std::int64_t next = lattice.index(at);
+            const float fall = film_m_[static_cast<std::size_t>(next)] < film ? way.fall : kFuller * way.fall;
+            if (fall > steepest && open_to_gas(model, state, next)) steepest = fall, best = next;
+        }
         if (best < 0) continue;
         const float moved = kRunShare * (film - kStays_m);
         film -= moved;
