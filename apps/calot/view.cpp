@@ -1,5 +1,9 @@
 // `calot view`: the trainer's window.
 
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -29,10 +33,22 @@ int physics_threads(int wanted) {
     return std::max(1, std::min(4, cores - 2));
 }
 
-/// Mesa's software renderer would take every core; one stays with the physics. Graphics processors ignore this.
+/// Whether threads may have real-time priority here: tries it.
+bool may_be_real_time() {
+    sched_param ordinary{}, urgent{};
+    int policy = 0;
+    if (::pthread_getschedparam(::pthread_self(), &policy, &ordinary) != 0) return false;
+    urgent.sched_priority = ::sched_get_priority_min(SCHED_FIFO);
+    if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &urgent) != 0) return false;
+    ::pthread_setschedparam(::pthread_self(), policy, &ordinary);
+    return true;
+}
+
+/// Mesa's software renderer would take every core; one stays with the physics, unless that goes first in any case.
+/// Graphics processors ignore this.
 void leave_a_core() {
-    const unsigned cores = std::thread::hardware_concurrency();
-    if (cores > 1) ::setenv("LP_NUM_THREADS", std::to_string(std::min(16u, cores - 1)).c_str(), 0);
+    const unsigned cores = std::thread::hardware_concurrency(), drawing = may_be_real_time() ? cores : cores - 1;
+    if (drawing > 0) ::setenv("LP_NUM_THREADS", std::to_string(std::min(16u, drawing)).c_str(), 0);
 }
 
 /// A device for the right hand, whose directions are those of the picture as it is at first.
