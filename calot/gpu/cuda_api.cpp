@@ -6,48 +6,43 @@
 
 #include <fmt/format.h>
 
+#include "calot/base/library.h"
+
 namespace calot::gpu::cuda {
 
 namespace {
 
-template <class F>
-void find(void* library, const char* name, F& function, std::string& missing) {
-    void* symbol = dlsym(library, name);
-    if (symbol == nullptr) missing += (missing.empty() ? "" : ", ") + std::string(name);
-    function = reinterpret_cast<F>(symbol);
-}
-
 std::string find_all(void* library, Api& api) {
     std::string missing;
-    find(library, "cuInit", api.Init, missing);
-    find(library, "cuDriverGetVersion", api.DriverGetVersion, missing);
-    find(library, "cuGetErrorName", api.GetErrorName, missing);
-    find(library, "cuGetErrorString", api.GetErrorString, missing);
-    find(library, "cuDeviceGetCount", api.DeviceGetCount, missing);
-    find(library, "cuDeviceGet", api.DeviceGet, missing);
-    find(library, "cuDeviceGetName", api.DeviceGetName, missing);
-    find(library, "cuDeviceTotalMem_v2", api.DeviceTotalMem, missing);
-    find(library, "cuDeviceGetAttribute", api.DeviceGetAttribute, missing);
-    find(library, "cuDevicePrimaryCtxRetain", api.DevicePrimaryCtxRetain, missing);
-    find(library, "cuDevicePrimaryCtxRelease_v2", api.DevicePrimaryCtxRelease, missing);
-    find(library, "cuCtxSetCurrent", api.CtxSetCurrent, missing);
-    find(library, "cuStreamCreate", api.StreamCreate, missing);
-    find(library, "cuStreamDestroy_v2", api.StreamDestroy, missing);
-    find(library, "cuStreamSynchronize", api.StreamSynchronize, missing);
-    find(library, "cuMemAlloc_v2", api.MemAlloc, missing);
-    find(library, "cuMemFree_v2", api.MemFree, missing);
-    find(library, "cuMemcpyHtoDAsync_v2", api.MemcpyHtoDAsync, missing);
-    find(library, "cuMemcpyDtoHAsync_v2", api.MemcpyDtoHAsync, missing);
-    find(library, "cuMemcpyDtoDAsync_v2", api.MemcpyDtoDAsync, missing);
-    find(library, "cuMemsetD8Async", api.MemsetD8Async, missing);
-    find(library, "cuModuleLoadData", api.ModuleLoadData, missing);
-    find(library, "cuModuleUnload", api.ModuleUnload, missing);
-    find(library, "cuModuleGetFunction", api.ModuleGetFunction, missing);
-    find(library, "cuLaunchKernel", api.LaunchKernel, missing);
-    find(library, "cuEventCreate", api.EventCreate, missing);
-    find(library, "cuEventDestroy_v2", api.EventDestroy, missing);
-    find(library, "cuEventRecord", api.EventRecord, missing);
-    find(library, "cuEventElapsedTime", api.EventElapsedTime, missing);
+    find_function(library, "cuInit", api.Init, missing);
+    find_function(library, "cuDriverGetVersion", api.DriverGetVersion, missing);
+    find_function(library, "cuGetErrorName", api.GetErrorName, missing);
+    find_function(library, "cuGetErrorString", api.GetErrorString, missing);
+    find_function(library, "cuDeviceGetCount", api.DeviceGetCount, missing);
+    find_function(library, "cuDeviceGet", api.DeviceGet, missing);
+    find_function(library, "cuDeviceGetName", api.DeviceGetName, missing);
+    find_function(library, "cuDeviceTotalMem_v2", api.DeviceTotalMem, missing);
+    find_function(library, "cuDeviceGetAttribute", api.DeviceGetAttribute, missing);
+    find_function(library, "cuDevicePrimaryCtxRetain", api.DevicePrimaryCtxRetain, missing);
+    find_function(library, "cuDevicePrimaryCtxRelease_v2", api.DevicePrimaryCtxRelease, missing);
+    find_function(library, "cuCtxSetCurrent", api.CtxSetCurrent, missing);
+    find_function(library, "cuStreamCreate", api.StreamCreate, missing);
+    find_function(library, "cuStreamDestroy_v2", api.StreamDestroy, missing);
+    find_function(library, "cuStreamSynchronize", api.StreamSynchronize, missing);
+    find_function(library, "cuMemAlloc_v2", api.MemAlloc, missing);
+    find_function(library, "cuMemFree_v2", api.MemFree, missing);
+    find_function(library, "cuMemcpyHtoDAsync_v2", api.MemcpyHtoDAsync, missing);
+    find_function(library, "cuMemcpyDtoHAsync_v2", api.MemcpyDtoHAsync, missing);
+    find_function(library, "cuMemcpyDtoDAsync_v2", api.MemcpyDtoDAsync, missing);
+    find_function(library, "cuMemsetD8Async", api.MemsetD8Async, missing);
+    find_function(library, "cuModuleLoadData", api.ModuleLoadData, missing);
+    find_function(library, "cuModuleUnload", api.ModuleUnload, missing);
+    find_function(library, "cuModuleGetFunction", api.ModuleGetFunction, missing);
+    find_function(library, "cuLaunchKernel", api.LaunchKernel, missing);
+    find_function(library, "cuEventCreate", api.EventCreate, missing);
+    find_function(library, "cuEventDestroy_v2", api.EventDestroy, missing);
+    find_function(library, "cuEventRecord", api.EventRecord, missing);
+    find_function(library, "cuEventElapsedTime", api.EventElapsedTime, missing);
     return missing;
 }
 

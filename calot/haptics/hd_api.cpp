@@ -4,38 +4,33 @@
 
 #include <fmt/format.h>
 
+#include "calot/base/library.h"
+
 namespace calot::haptics::hd {
 
 namespace {
 
-template <class F>
-void find(void* library, const char* name, F& function, std::string& missing) {
-    void* symbol = dlsym(library, name);
-    if (symbol == nullptr) missing += (missing.empty() ? "" : ", ") + std::string(name);
-    function = reinterpret_cast<F>(symbol);
-}
-
 std::string find_all(void* library, Api& api) {
     std::string missing;
-    find(library, "hdInitDevice", api.InitDevice, missing);
-    find(library, "hdDisableDevice", api.DisableDevice, missing);
-    find(library, "hdMakeCurrentDevice", api.MakeCurrentDevice, missing);
-    find(library, "hdBeginFrame", api.BeginFrame, missing);
-    find(library, "hdEndFrame", api.EndFrame, missing);
-    find(library, "hdGetIntegerv", api.GetIntegerv, missing);
-    find(library, "hdGetDoublev", api.GetDoublev, missing);
-    find(library, "hdGetString", api.GetString, missing);
-    find(library, "hdSetDoublev", api.SetDoublev, missing);
-    find(library, "hdEnable", api.Enable, missing);
-    find(library, "hdDisable", api.Disable, missing);
-    find(library, "hdGetError", api.GetError, missing);
-    find(library, "hdGetErrorString", api.GetErrorString, missing);
-    find(library, "hdCheckCalibration", api.CheckCalibration, missing);
-    find(library, "hdUpdateCalibration", api.UpdateCalibration, missing);
-    find(library, "hdScheduleAsynchronous", api.ScheduleAsynchronous, missing);
-    find(library, "hdUnschedule", api.Unschedule, missing);
-    find(library, "hdStartScheduler", api.StartScheduler, missing);
-    find(library, "hdStopScheduler", api.StopScheduler, missing);
+    find_function(library, "hdInitDevice", api.InitDevice, missing);
+    find_function(library, "hdDisableDevice", api.DisableDevice, missing);
+    find_function(library, "hdMakeCurrentDevice", api.MakeCurrentDevice, missing);
+    find_function(library, "hdBeginFrame", api.BeginFrame, missing);
+    find_function(library, "hdEndFrame", api.EndFrame, missing);
+    find_function(library, "hdGetIntegerv", api.GetIntegerv, missing);
+    find_function(library, "hdGetDoublev", api.GetDoublev, missing);
+    find_function(library, "hdGetString", api.GetString, missing);
+    find_function(library, "hdSetDoublev", api.SetDoublev, missing);
+    find_function(library, "hdEnable", api.Enable, missing);
+    find_function(library, "hdDisable", api.Disable, missing);
+    find_function(library, "hdGetError", api.GetError, missing);
+    find_function(library, "hdGetErrorString", api.GetErrorString, missing);
+    find_function(library, "hdCheckCalibration", api.CheckCalibration, missing);
+    find_function(library, "hdUpdateCalibration", api.UpdateCalibration, missing);
+    find_function(library, "hdScheduleAsynchronous", api.ScheduleAsynchronous, missing);
+    find_function(library, "hdUnschedule", api.Unschedule, missing);
+    find_function(library, "hdStartScheduler", api.StartScheduler, missing);
+    find_function(library, "hdStopScheduler", api.StopScheduler, missing);
     return missing;
 }
 
