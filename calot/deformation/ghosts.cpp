@@ -12,8 +12,14 @@ namespace calot::deformation {
 
 namespace {
 
-/// Ghosts of a parallel loop's task: fewer are not worth a second thread.
-constexpr std::int64_t kTaskGhosts = 1536;
+/// Up to so many ghosts are one task: fewer are not worth a second thread.
+constexpr std::int64_t kOneTask = 1536;
+/// Of more, each task has so many: some 2 us of work, so that two threads end together.
+constexpr std::int64_t kTaskGhosts = 256;
+
+std::int64_t task_of(std::int64_t count) {
+    return count <= kOneTask ? kOneTask : kTaskGhosts;
+}
 
 float unless_below(float least, float x) {
     return std::fabs(x) < least ? 0.0f : x;
@@ -111,7 +117,7 @@ void refresh_images(Work& work) {
 void move_ghosts(tissue::State& state, const Work& work) {
     const Images& images = work.images;
     const auto count = static_cast<std::int64_t>(images.ghost.size());
-    parallel_for("deformation.ghosts", 0, count, kTaskGhosts, [&](std::int64_t low, std::int64_t high) {
+    parallel_for("deformation.ghosts", 0, count, task_of(count), [&](std::int64_t low, std::int64_t high) {
         float *x = state.displacement_m[0].data(), *y = state.displacement_m[1].data(),
               *z = state.displacement_m[2].data();
         for (auto n = static_cast<std::size_t>(low); n < static_cast<std::size_t>(high); ++n) {
@@ -136,7 +142,7 @@ void move_ghosts(tissue::State& state, const Work& work) {
 void return_ghost_impulses(tissue::State& state, const Work& work, float decay) {
     const Images& images = work.images;
     const auto count = static_cast<std::int64_t>(images.phyxel.size());
-    parallel_for("deformation.impulses", 0, count, kTaskGhosts, [&](std::int64_t low, std::int64_t high) {
+    parallel_for("deformation.impulses", 0, count, task_of(count), [&](std::int64_t low, std::int64_t high) {
         float *x = state.velocity_m_per_s[0].data(), *y = state.velocity_m_per_s[1].data(),
               *z = state.velocity_m_per_s[2].data();
         for (auto n = static_cast<std::size_t>(low); n < static_cast<std::size_t>(high); ++n) {

@@ -64,13 +64,14 @@ std::int64_t first_bad_cell(const Model& model, const State& state) {
 /// Where a displacement is no number, neither is the stretch of its phyxel and neighbours: Group::overstretched has
 /// both.
 bool all_finite(const State& state, const Work& work) {
-    for (const Group& group : work.groups)
+    bool finite = true;
+    for_each_strained(work, [&](const Group& group) {
         for (std::uint32_t rest = group.overstretched; rest != 0; rest &= rest - 1) {
             const auto i = static_cast<std::size_t>(group.first + __builtin_ctz(rest));
-            for (const auto& u : state.displacement_m)
-                if (!std::isfinite(u[i])) return false;
+            for (const auto& u : state.displacement_m) finite &= std::isfinite(u[i]);
         }
-    return true;
+    });
+    return finite;
 }
 
 }  // namespace
@@ -126,6 +127,8 @@ KernelView KernelView::make(const Model& model, State& state, Work& work) {
     }
     for (std::size_t e = 0; e < 6; ++e) view.moment_inverse[e] = work.moment_inverse[e].data();
     view.stiffening = work.stiffening.data();
+    view.strained = work.strained.data();
+    view.first_group = work.groups.data();
     const double stretch = model.deformation.tear_stretch;
     // Uniaxial stretch of incompressible tissue: lambda along, 1 / sqrt(lambda) across.
     view.most_squared_stretch = static_cast<float>(stretch * stretch + 2.0 / stretch);

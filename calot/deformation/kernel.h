@@ -29,6 +29,8 @@ struct KernelView {
     std::array<float*, 3> displacement_m{}, velocity_m_per_s{};
     std::array<float*, 9> gradient{}, moment_stress{};
     float* stiffening = nullptr;
+    std::uint8_t* strained = nullptr;  ///< by group
+    const Group* first_group = nullptr;
     float most_squared_stretch = 0.0f;  ///< |F|^2 beyond which tissue tears
     std::array<const float*, 6> moment_inverse{};
     std::array<float*, 3> own_force_N{};

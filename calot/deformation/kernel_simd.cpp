@@ -33,8 +33,8 @@ using D = simd::Floats;
 constexpr float kFace = static_cast<float>(kFaceWeight);  ///< edges weigh 1
 using Mask = hn::Mask<D>;
 
-/// A vector of floats with ordinary arithmetic. (Its constructors are written out: g++ makes others without the target's
-/// options, and then cannot inline them on Arm.)
+/// A vector of floats with ordinary arithmetic. (Its constructors are written out: g++ makes others without the
+/// target's options, and then cannot inline them on Arm.)
 struct Lanes {
     hn::Vec<D> v;
     HWY_INLINE Lanes() {}
@@ -234,17 +234,25 @@ HWY_INLINE void measure_stretch(const KernelView& k, const Place& at, const Lane
     store(Lanes{hn::Max(stiffening.v, hn::Zero(d))}, k.stiffening + at.i);
     at.mark(at.group.overstretched, hn::Not(hn::Le(stretch.v, hn::Set(d, k.most_squared_stretch))));
     at.mark(at.group.stiffened, hn::Gt(stiffening.v, hn::Set(d, kStiffer)));
+    k.strained[&at.group - k.first_group] = (at.group.overstretched | at.group.stiffened) != 0 ? 1 : 0;
+}
+
+/// G, and the hourglass force.
+HWY_INLINE void shape_of(const KernelView& k, const Place& at, Lanes hourglass, Lanes (&inverse)[6], Lanes (&g)[9],
+                         Lanes (&force)[3]) {
+    Lanes b[9];
+    add_all_links(k, at, hourglass, b, force);
+    for (int e = 0; e < 6; ++e) inverse[e] = load(k.moment_inverse[e] + at.i);
+    for (int e = 0; e < 9; ++e) b[e] = all(k.spacing_m) * b[e];
+    multiply_symmetric(b, inverse, g);
 }
 
 template <tissue::ElasticLaw law>
 HWY_INLINE void gradients_of(const KernelView& k, const Place& at) {
     const std::int64_t i = at.i;
-    Lanes b[9], force[3], inverse[6], g[9], p[9], m[9], cofactor_f[9];
+    Lanes force[3], inverse[6], g[9], p[9], m[9], cofactor_f[9];
     const Lanes hourglass = load(k.hourglass + i), spacing = all(k.spacing_m);
-    add_all_links(k, at, hourglass, b, force);
-    for (int e = 0; e < 6; ++e) inverse[e] = load(k.moment_inverse[e] + i);
-    for (int e = 0; e < 9; ++e) b[e] = spacing * b[e];
-    multiply_symmetric(b, inverse, g);
+    shape_of(k, at, hourglass, inverse, g, force);
     stress<law>(k, g, load(k.lame_mu_Pa + i), load(k.lame_lambda_Pa + i), p, cofactor_f);
     const Lanes volume = load(k.volume_m3 + i);
     for (int e = 0; e < 6; ++e) inverse[e] = volume * inverse[e];
@@ -265,10 +273,16 @@ HWY_INLINE void gradients_of(const KernelView& k, const Place& at) {
     }
 }
 
-/// Of ghosts alone, while nobody embeds points: they have no stress.
+/// Of ghosts alone: they have no stress.
 HWY_INLINE void ghost_forces_of(const KernelView& k, const Place& at) {
-    Lanes b[9], force[3];
-    add_all_links(k, at, load(k.hourglass + at.i), b, force);
+    Lanes b[9], force[3], inverse[6], g[9];
+    const Lanes hourglass = load(k.hourglass + at.i);
+    if (k.embedding) {
+        shape_of(k, at, hourglass, inverse, g, force);
+        for (int e = 0; e < 9; ++e) store(g[e], k.gradient[e] + at.i);
+    } else {
+        add_all_links(k, at, hourglass, b, force);
+    }
     for (int r = 0; r < 3; ++r) store(force[r], k.own_force_N[static_cast<std::size_t>(r)] + at.i);
 }
 
@@ -287,7 +301,7 @@ void gradients_with(const KernelView& k, Groups groups) {
         groups, [](const Group& group) { return std::uint32_t{group.present} | group.ghost; },
         [&](const Place& at) HWY_ATTR {
             const std::uint32_t lanes = (1u << hn::Lanes(D())) - 1u;
-            if (k.embedding || ((std::uint32_t{at.group.present} >> at.lane) & lanes) != 0)
+            if (((std::uint32_t{at.group.present} >> at.lane) & lanes) != 0)
                 gradients_of<law>(k, at);
             else
                 ghost_forces_of(k, at);

@@ -97,7 +97,7 @@ void raise_masses(const tissue::Model& model, const tissue::State& state, Work& 
         if (most == 1.0f) work.raised.push_back(static_cast<std::int32_t>(cell));
         most = factor;
     };
-    for (const Group& group : work.groups)
+    for_each_strained(work, [&](const Group& group) {
         for (std::uint32_t rest = group.stiffened & group.present; rest != 0; rest &= rest - 1) {
             const std::int64_t phyxel = group.first + __builtin_ctz(rest);
             const float factor = 1.0f + work.stiffening[static_cast<std::size_t>(phyxel)];
@@ -106,6 +106,7 @@ void raise_masses(const tissue::Model& model, const tissue::State& state, Work& 
                 if (state.phyxel_present.test(other)) raise(other, factor);
             });
         }
+    });
     for (const std::int32_t cell : work.raised) set_mass(work, cell, work.raise[static_cast<std::size_t>(cell)]);
 }
 

@@ -87,6 +87,7 @@ struct Work {
     Array<float> hexel_weight;  ///< [m^3][27] kernel of hexel centres towards the 3^3 phyxels about their own
 
     std::vector<Group> groups;                 ///< hold all phyxels and ghosts, do not overlap, ascending
+    std::vector<std::uint8_t> strained;        ///< [groups] has an overstretched or stiffened cell
     std::vector<std::int32_t> touched_groups;  ///< scratch
     std::vector<std::uint16_t> near_lanes;     ///< [groups] scratch of find_near
     std::array<Array<float>, 3> rest_m;        ///< [phyxels.cells] centres at rest
@@ -95,6 +96,13 @@ struct Work {
     int substeps = 1;
     float substep_s = 1e-3f;
 };
+
+/// Calls visit(group) for the groups that have an overstretched or stiffened cell.
+template <class Visit>
+void for_each_strained(const Work& work, const Visit& visit) {
+    for (std::size_t g = 0; g < work.groups.size(); ++g)
+        if (work.strained[g] != 0) visit(work.groups[g]);
+}
 
 /// Reserves and computes everything from model and state.
 Work make_work(const tissue::Model& model, const tissue::State& state);
