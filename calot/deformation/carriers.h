@@ -97,9 +97,9 @@ inline const std::array<Corner, 8>& corners() {
     return table;
 }
 
-/// The same as above from Work::link_word, in a fraction of the time.
-inline Carriers find_carriers(const tissue::Model& model, const tissue::State& state, const Work& work,
-                              std::int64_t phyxel) {
+/// The same as above from Work::link_word, in a fraction of the time. (Or state and work are both a Pose.)
+template <class State, class Work>
+Carriers find_carriers(const tissue::Model& model, const State& state, const Work& work, std::int64_t phyxel) {
     Carriers carriers;
     if (phyxel < model.phyxels.first || phyxel >= model.phyxels.last || !state.phyxel_present.test(phyxel))
         return carriers;
@@ -130,7 +130,8 @@ struct CarrierFields {
     static constexpr int kComponents = 12;  ///< a (3), G (9, row-major)
     alignas(64) std::array<std::array<float, kComponents>, kNeighbourhood> field;
 
-    void gather(const tissue::Model& model, const tissue::State& state, const Work& work, const Carriers& carriers) {
+    template <class State, class Work>
+    void gather(const tissue::Model& model, const State& state, const Work& work, const Carriers& carriers) {
         const auto spacing = static_cast<float>(model.phyxels.spacing_m);
         const auto& links = neighbour_links();
         for (int n = 0; n < carriers.count; ++n) {

@@ -22,6 +22,17 @@ std::int64_t sorting_key(std::int64_t phyxel, const Vec3f& relative) {
 
 void EmbeddedPoints::rebuild(const tissue::Model& model, const tissue::State& state, std::span<const Vec3f> rest_m,
                              std::span<const std::int64_t> owner) {
+    rebuild_with(model, rest_m, owner, [&](std::int64_t phyxel) { return find_carriers(model, state, phyxel); });
+}
+
+void EmbeddedPoints::rebuild(const tissue::Model& model, const Pose& pose, std::span<const Vec3f> rest_m,
+                             std::span<const std::int64_t> owner) {
+    rebuild_with(model, rest_m, owner, [&](std::int64_t phyxel) { return find_carriers(model, pose, pose, phyxel); });
+}
+
+template <class FindCarriers>
+void EmbeddedPoints::rebuild_with(const tissue::Model& model, std::span<const Vec3f> rest_m,
+                                  std::span<const std::int64_t> owner, const FindCarriers& find) {
     assert(rest_m.size() == owner.size());
     const Lattice& lattice = model.phyxels;
     const auto cells = static_cast<std::size_t>(lattice.cells);
@@ -55,7 +66,7 @@ void EmbeddedPoints::rebuild(const tissue::Model& model, const tissue::State& st
     Carriers carriers;
     for (std::size_t next = 0; next < points_;) {
         const std::int64_t phyxel = order_[next][0] / 8;
-        if (next == 0 || order_[next - 1][0] / 8 != phyxel) carriers = find_carriers(model, state, phyxel);
+        if (next == 0 || order_[next - 1][0] / 8 != phyxel) carriers = find(phyxel);
         const Vec3f centre = centre_of(phyxel);
         Block block;
         std::array<std::array<float, kLanes>, kNeighbourhood> weight{};
@@ -89,12 +100,23 @@ void EmbeddedPoints::rebuild(const tissue::Model& model, const tissue::State& st
 
 void EmbeddedPoints::move(const tissue::Model& model, const tissue::State& state, const Work& work,
                           std::span<Vec3f> world_m, std::span<Mat3f> deformation_gradient) {
+    move_with(model, state.displacement_m, work.gradient, world_m, deformation_gradient);
+}
+
+void EmbeddedPoints::move(const tissue::Model& model, const Pose& pose, std::span<Vec3f> world_m,
+                          std::span<Mat3f> deformation_gradient) {
+    move_with(model, pose.displacement_m, pose.gradient, world_m, deformation_gradient);
+}
+
+void EmbeddedPoints::move_with(const tissue::Model& model, const std::array<Array<float>, 3>& displacement_m,
+                               const std::array<Array<float>, 9>& gradient, std::span<Vec3f> world_m,
+                               std::span<Mat3f> deformation_gradient) {
     assert(world_m.size() == points_ && (deformation_gradient.empty() || deformation_gradient.size() == points_));
     View view;
     view.blocks = blocks_.data();
     view.carrier_phyxel = carrier_phyxel_.data();
     view.weight = weight_.data();
-    for (std::size_t e = 0; e < 9; ++e) view.field[3 + e] = work.gradient[e].data();
+    for (std::size_t e = 0; e < 9; ++e) view.field[3 + e] = gradient[e].data();
     for (std::size_t r = 0; r < 3; ++r) view.field[r] = offset_m_[r].data();
     view.world_m = world_m.data();
     view.deformation_gradient = deformation_gradient.empty() ? nullptr : deformation_gradient.data();
@@ -105,7 +127,7 @@ void EmbeddedPoints::move(const tissue::Model& model, const tissue::State& state
                      const float* y = centre_m_[1].data();
                      const float* z = centre_m_[2].data();
                      for (std::size_t r = 0; r < 3; ++r) {
-                         const float* u = state.displacement_m[r].data();
+                         const float* u = displacement_m[r].data();
                          const float* gx = view.field[3 + 3 * r];
                          const float* gy = view.field[4 + 3 * r];
                          const float* gz = view.field[5 + 3 * r];

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "calot/base/array.h"
-#include "calot/deformation/work.h"
+#include "calot/deformation/embedding.h"
 
 namespace calot::deformation {
 
@@ -20,9 +20,13 @@ class EmbeddedPoints {
     /// For the points and owners of embed_points. To be called again whenever they, or State::links, changed.
     void rebuild(const tissue::Model& model, const tissue::State& state, std::span<const Vec3f> rest_m,
                  std::span<const std::int64_t> owner);
+    void rebuild(const tissue::Model& model, const Pose& pose, std::span<const Vec3f> rest_m,
+                 std::span<const std::int64_t> owner);
 
     /// As embed_points does, to rounding; the same bytes for any number of threads.
     void move(const tissue::Model& model, const tissue::State& state, const Work& work, std::span<Vec3f> world_m,
+              std::span<Mat3f> deformation_gradient = {});
+    void move(const tissue::Model& model, const Pose& pose, std::span<Vec3f> world_m,
               std::span<Mat3f> deformation_gradient = {});
 
     std::size_t size() const { return points_; }
@@ -47,6 +51,13 @@ class EmbeddedPoints {
     };
 
   private:
+    template <class FindCarriers>
+    void rebuild_with(const tissue::Model& model, std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner,
+                      const FindCarriers& find);
+    void move_with(const tissue::Model& model, const std::array<Array<float>, 3>& displacement_m,
+                   const std::array<Array<float>, 9>& gradient, std::span<Vec3f> world_m,
+                   std::span<Mat3f> deformation_gradient);
+
     std::size_t points_ = 0;
     std::vector<Block, AlignedAllocator<Block>> blocks_;
     Array<std::int32_t> carrier_phyxel_;

@@ -62,11 +62,9 @@ struct SharedCarriers {
 };
 constexpr std::size_t kKept = 16;
 
-}  // namespace
-
-void embed_points(const tissue::Model& model, const tissue::State& state, const Work& work,
-                  std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner, std::span<Vec3f> world_m,
-                  std::span<Mat3f> deformation_gradient) {
+template <class State, class Work>
+void embed(const tissue::Model& model, const State& state, const Work& work, std::span<const Vec3f> rest_m,
+           std::span<const std::int64_t> owner, std::span<Vec3f> world_m, std::span<Mat3f> deformation_gradient) {
     assert(owner.size() == rest_m.size() && world_m.size() == rest_m.size());
     assert(deformation_gradient.empty() || deformation_gradient.size() == rest_m.size());
     const auto count = static_cast<std::int64_t>(rest_m.size());
@@ -93,6 +91,29 @@ void embed_points(const tissue::Model& model, const tissue::State& state, const 
             if (!deformation_gradient.empty()) deformation_gradient[p] = deformation_gradient_of(f);
         }
     });
+}
+
+}  // namespace
+
+void embed_points(const tissue::Model& model, const tissue::State& state, const Work& work,
+                  std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner, std::span<Vec3f> world_m,
+                  std::span<Mat3f> deformation_gradient) {
+    embed(model, state, work, rest_m, owner, world_m, deformation_gradient);
+}
+
+void embed_points(const tissue::Model& model, const Pose& pose, std::span<const Vec3f> rest_m,
+                  std::span<const std::int64_t> owner, std::span<Vec3f> world_m,
+                  std::span<Mat3f> deformation_gradient) {
+    embed(model, pose, pose, rest_m, owner, world_m, deformation_gradient);
+}
+
+void Pose::copy(const tissue::State& state, const Work& work) {
+    displacement_m = state.displacement_m;
+    gradient = work.gradient;
+    phyxel_present = state.phyxel_present;
+    link_word = work.link_word;
+    neighbour_offset = work.neighbour_offset;
+    links_severed = state.links_severed;
 }
 
 void embed_points_reference(const tissue::Model& model, const tissue::State& state, const Work& work,

@@ -23,6 +23,22 @@ void embed_points(const tissue::Model& model, const tissue::State& state, const 
                   std::span<const Vec3f> rest_m, std::span<const std::int64_t> owner, std::span<Vec3f> world_m,
                   std::span<Mat3f> deformation_gradient = {});
 
+/// What embedding reads of a body, copied at one moment: where points are can then be worked out while the body goes
+/// on. Members are those of State and Work.
+struct Pose {
+    std::array<Array<float>, 3> displacement_m;
+    std::array<Array<float>, 9> gradient;
+    BitArray phyxel_present;
+    Array<std::uint32_t> link_word;
+    std::array<std::int64_t, 27> neighbour_offset{};
+    std::int64_t links_severed = -1;
+
+    void copy(const tissue::State& state, const Work& work);
+};
+void embed_points(const tissue::Model& model, const Pose& pose, std::span<const Vec3f> rest_m,
+                  std::span<const std::int64_t> owner, std::span<Vec3f> world_m,
+                  std::span<Mat3f> deformation_gradient = {});
+
 /// How far from the surface of an instrument hexels are near it.
 struct NearReach {
     double bare_m = 0.0;     ///< from bare metal

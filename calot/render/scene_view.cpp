@@ -259,6 +259,15 @@ void fill_tissue(const tissue::Model& model, const tissue::State& state, std::sp
     }
 }
 
+void place_tissue(std::span<const Vec3f> rest_m, std::span<const Vec3f> rest_normal, std::span<const Vec3f> world_m,
+                  std::span<const Mat3f> deformation_gradient, std::span<TissueVertex> vertices) {
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        vertices[v].world_m = world_m[v];
+        vertices[v].rest_m = rest_m[v];
+        vertices[v].normal = turned(rest_normal[v], deformation_gradient[v]);
+    }
+}
+
 Look look_of(const std::string& name) {
     if (contains(name, "gallbladder")) return Look::gallbladder;
     if (contains(name, "duct")) return Look::duct;

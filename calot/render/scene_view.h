@@ -32,6 +32,10 @@ void fill_tissue(const tissue::Model& model, const tissue::State& state, std::sp
 void fill_tissue(const tissue::Model& model, const tissue::State& state, std::span<const float> temperature_K,
                  const SurfaceVertices& surface, std::size_t low, std::size_t high, std::span<TissueVertex> vertices);
 
+/// Only moves vertices that have their looks: world, rest and turned normals, all of one length.
+void place_tissue(std::span<const Vec3f> rest_m, std::span<const Vec3f> rest_normal, std::span<const Vec3f> world_m,
+                  std::span<const Mat3f> deformation_gradient, std::span<TissueVertex> vertices);
+
 /// Which look an organ or material name asks for ("cystic_artery" -> artery ...); peritoneum when nothing fits.
 Look look_of(const std::string& name);
 

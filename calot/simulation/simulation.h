@@ -74,6 +74,8 @@ class Simulation {
     /// What became of the backend that was asked for, if it failed: for people.
     const std::vector<std::string>& notices() const { return notices_; }
 
+    /// Whether displacements are on a device, and world_surface() is the way to have the surface moved by them.
+    bool moves_surface_itself() const { return kept_.has_value(); }
     /// World positions and deformation gradients of Surface::smooth_mesh()'s vertices.
     void world_surface(WorldSurface& out) const;
 

@@ -71,6 +71,7 @@ struct Surface::Impl {
     void redo_vertices(std::int64_t block);
     void write_vertices(std::int64_t block, const ChangedPoints* changed, const OldBlock* before);
     void gather();
+    void gather_into(Mesh& mesh, std::vector<std::int64_t>& mesh_owner);
 };
 
 Surface::Impl::Impl(const tissue::Model& model) : grid(model.hexels), spacing_m(model.hexels.spacing_m) {
@@ -259,6 +260,12 @@ void Surface::Impl::write_vertices(std::int64_t block, const ChangedPoints* chan
 
 void Surface::Impl::gather() {
     if (gathered) return;
+    gather_into(mesh, mesh_owner);
+    gathered = true;
+    smoothed = false;
+}
+
+void Surface::Impl::gather_into(Mesh& mesh, std::vector<std::int64_t>& mesh_owner) {
     redo_marked();
     std::uint32_t vertices = 0, triangles = 0;
     for (std::int64_t block = 0; block < grid.count(); ++block) {
@@ -293,8 +300,6 @@ void Surface::Impl::gather() {
             *index++ = first[static_cast<std::size_t>(CornerCode::owner(code[k]))] +
                        static_cast<std::uint32_t>(CornerCode::place(code[k]));
     }
-    gathered = true;
-    smoothed = false;
 }
 
 Surface::Surface(const tissue::Model& model) : impl_(std::make_unique<Impl>(model)) {}
@@ -343,6 +348,12 @@ const Mesh& Surface::rest_mesh() const {
 const std::vector<std::int64_t>& Surface::owner() const {
     impl_->gather();
     return impl_->mesh_owner;
+}
+
+void Surface::copy_rest_mesh(Mesh& mesh, std::vector<std::int64_t>& owner) const {
+    if (!impl_->gathered) return impl_->gather_into(mesh, owner);
+    mesh = impl_->mesh;
+    owner = impl_->mesh_owner;
 }
 
 const Mesh& Surface::smooth_mesh() const {

@@ -37,6 +37,8 @@ class Surface {
     const Mesh& rest_mesh() const;
     /// For every vertex of rest_mesh(): a hexel nearby (present), for attributes and for the side of a cut it is on.
     const std::vector<std::int64_t>& owner() const;
+    /// The same, copied.
+    void copy_rest_mesh(Mesh& mesh, std::vector<std::int64_t>& owner) const;
     /// rest_mesh() smoothed for drawing (smoothing.h): same triangles and owners. Worked out when something changed
     /// since the last call.
     const Mesh& smooth_mesh() const;

@@ -129,13 +129,13 @@ bool SessionCore::tick(const Controls& controls) {
 void fill_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture,
                    Snapshot& snapshot) {
     begin_snapshot(run, input, picture, snapshot);
-    picture.go_on(run, snapshot.view.tissue.size(), snapshot.view);
+    picture.go_on(run, snapshot.view.tissue.size(), snapshot.moment, snapshot.view);
 }
 
 void begin_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture,
                     Snapshot& snapshot) {
     const tissue::State& state = run.figures();
-    picture.begin(run, input, snapshot.view);
+    picture.begin(run, input, snapshot.moment, snapshot.view);
     snapshot.tick = state.tick;
     snapshot.time_s = run.time_s();
     snapshot.generator = state.generator;

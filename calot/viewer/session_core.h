@@ -24,7 +24,7 @@ Theatre theatre_of(const simulation::Setup& setup);
 /// The same with both hands where a run has them: it goes on from there.
 Theatre theatre_of(const simulation::Simulation& run);
 
-/// What does not come from the hands: picture, generator, forces, blood.
+/// What does not come from the hands: picture (to be placed), generator, forces, blood.
 void fill_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture, Snapshot& snapshot);
 /// The same, but for what tissue looks like: Picture::go_on.
 void begin_snapshot(const simulation::Simulation& run, const tissue::Input& input, Picture& picture,
@@ -48,10 +48,12 @@ class SessionCore {
 
     /// One tick of hands and physics. False once the simulation's status is not ok.
     bool tick(const Controls& controls);
-    void fill(Snapshot& snapshot);
+    void fill(Snapshot& snapshot);  ///< to be placed
     /// The same, a few vertices after every tick. True when it is full.
     void begin(Snapshot& snapshot);
-    bool go_on(Snapshot& snapshot, std::size_t vertices) { return picture_.go_on(*run_, vertices, snapshot.view); }
+    bool go_on(Snapshot& snapshot, std::size_t vertices) {
+        return picture_.go_on(*run_, vertices, snapshot.moment, snapshot.view);
+    }
     /// Tells the observers that this was all, once.
     void end();
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "calot/render/view.h"
 #include "calot/tissue/state.h"
+#include "calot/viewer/picture.h"
 
 namespace calot::viewer {
 
@@ -38,6 +38,7 @@ struct Figures {
 
 struct Snapshot : Figures {
     render::View view;  ///< the window sets its camera
+    Moment moment;      ///< out of which a Placer moves the view's tissue to its place
 };
 
 }  // namespace calot::viewer

@@ -127,8 +127,9 @@ void PictureThread::draw(viewer::Snapshot& snapshot, const PictureWish& wish) {
         for (next_target_ = 0; next_target_ + 1 < targets_.size() && targets_[next_target_].texture != 0;)
             ++next_target_;
     prepare(wish);
-    const double begun_s = viewer::steady_s();
     render::View& view = snapshot.view;
+    placer_.place(snapshot.moment, view);
+    const double begun_s = viewer::steady_s();
     view.camera = wish.camera;
     view.lens = wish.lens;
     renderer_->draw(view);

@@ -69,6 +69,7 @@ class PictureThread {
     viewer::QualityGovernor governor_;
     std::unique_ptr<render::Renderer> renderer_;
     render::Quality quality_ = render::Quality::low;
+    viewer::Placer placer_;
     std::array<Target, 3> targets_;
     std::size_t next_target_ = 0;
     TripleBuffer<PictureWish> wishes_;
