@@ -13,11 +13,20 @@
 
 namespace calot::deformation {
 
+/// Four floats with ordinary arithmetic.
+using Four = float __attribute__((vector_size(16)));
+
 /// The shape of Shepard's weights: (1 - r^2 / R^2)^3, r in phyxel spacings.
 inline float embedding_kernel(float r_squared) {
     constexpr auto kInverse = static_cast<float>(1.0 / (kEmbeddingRadius * kEmbeddingRadius));
     const float t = 1.0f - r_squared * kInverse;
     return t > 0.0f ? t * t * t : 0.0f;
+}
+/// Of four points.
+inline Four embedding_kernel(Four r_squared) {
+    constexpr auto kInverse = static_cast<float>(1.0 / (kEmbeddingRadius * kEmbeddingRadius));
+    const Four t = 1.0f - r_squared * kInverse;
+    return t > 0.0f ? t * t * t : Four{};
 }
 
 struct Carriers {
@@ -151,8 +160,7 @@ struct CarrierFields {
     }
 };
 
-/// Four floats with ordinary arithmetic, and a field as such.
-using Four = float __attribute__((vector_size(16)));
+/// A field as fours.
 using FieldFours = std::array<Four, CarrierFields::kComponents / 4>;
 static_assert(sizeof(FieldFours) == sizeof(float) * CarrierFields::kComponents);
 inline FieldFours fours(const std::array<float, CarrierFields::kComponents>& field) {

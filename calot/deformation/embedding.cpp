@@ -1,6 +1,7 @@
 #include "calot/deformation/embedding.h"
 
 #include <cassert>
+#include <cstring>
 
 #include "calot/base/parallel.h"
 #include "calot/base/random.h"
@@ -17,11 +18,31 @@ Vec3f relative_to(const tissue::Model& model, const Vec3f& rest_m, const Vec3f& 
     return (rest_m - centre_m) * static_cast<float>(1.0 / model.phyxels.spacing_m);
 }
 
-void raw_weights(const Carriers& carriers, const Vec3f& r, std::array<float, kNeighbourhood>& weight) {
-    const auto& links = neighbour_links();
-    for (int n = 0; n < carriers.count; ++n) {
-        const Vec3f d = r - Vec3f(links[static_cast<std::size_t>(carriers.cell[static_cast<std::size_t>(n)])].step);
-        weight[static_cast<std::size_t>(n)] = embedding_kernel(glm::dot(d, d));
+constexpr std::size_t kPadded = 28;  ///< carriers, for vectors of four
+
+/// Where the carriers of a phyxel are, in spacings from it, axis by axis.
+struct Steps {
+    alignas(16) std::array<std::array<float, kPadded>, 3> along{};
+
+    Steps() = default;
+    explicit Steps(const Carriers& carriers) {
+        const auto& links = neighbour_links();
+        for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                along[axis][n] =
+                    static_cast<float>(links[static_cast<std::size_t>(carriers.cell[n])].step[static_cast<int>(axis)]);
+    }
+};
+
+/// Of a point at r from the phyxel, in spacings; the first `count` count.
+void raw_weights(const Steps& steps, std::size_t count, const Vec3f& r, std::array<float, kPadded>& weight) {
+    const Four x{r.x, r.x, r.x, r.x}, y{r.y, r.y, r.y, r.y}, z{r.z, r.z, r.z, r.z};
+    for (std::size_t n = 0; n < count; n += 4) {
+        Four step[3];
+        for (std::size_t axis = 0; axis < 3; ++axis) std::memcpy(&step[axis], &steps.along[axis][n], sizeof(Four));
+        const Four dx = x - step[0], dy = y - step[1], dz = z - step[2];
+        const Four w = embedding_kernel(dx * dx + dy * dy + dz * dz);
+        std::memcpy(&weight[n], &w, sizeof(Four));
     }
 }
 
@@ -33,8 +54,9 @@ Stencil embedding_stencil(const tissue::Model& model, const tissue::State& state
     const Carriers carriers = find_carriers(model, state, work, owner);
     Stencil stencil;
     if (carriers.count == 0) return stencil;
-    std::array<float, kNeighbourhood> weight;
-    raw_weights(carriers, relative_to(model, rest_m, Vec3f(model.phyxels.centre_m(owner))), weight);
+    std::array<float, kPadded> weight;
+    raw_weights(Steps(carriers), static_cast<std::size_t>(carriers.count),
+                relative_to(model, rest_m, Vec3f(model.phyxels.centre_m(owner))), weight);
     float total = 0.0f;
     for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) {
         if (weight[n] == 0.0f) continue;
@@ -58,6 +80,7 @@ struct SharedCarriers {
     std::int64_t phyxel = -1;
     Vec3f centre_m{0.0f};
     Carriers carriers;
+    Steps steps;
     CarrierFields fields;
 };
 constexpr std::size_t kKept = 16;
@@ -70,7 +93,7 @@ void embed(const tissue::Model& model, const State& state, const Work& work, std
     const auto count = static_cast<std::int64_t>(rest_m.size());
     parallel_for("deformation.embed", 0, count, kPointsPerChunk, [&](std::int64_t low, std::int64_t high) {
         std::array<SharedCarriers, kKept> kept;
-        std::array<float, kNeighbourhood> weight;
+        std::array<float, kPadded> weight;
         for (auto p = static_cast<std::size_t>(low); p < static_cast<std::size_t>(high); ++p) {
             const std::int64_t phyxel = model.phyxel_of(model.hexels.coordinates(owner[p]));
             SharedCarriers& shared = kept[mix64(static_cast<std::uint64_t>(phyxel)) % kKept];
@@ -78,6 +101,7 @@ void embed(const tissue::Model& model, const State& state, const Work& work, std
                 shared.phyxel = phyxel;
                 shared.centre_m = Vec3f(model.phyxels.centre_m(phyxel));
                 shared.carriers = find_carriers(model, state, work, phyxel);
+                shared.steps = Steps(shared.carriers);
                 shared.fields.gather(model, state, work, shared.carriers);
             }
             if (shared.carriers.count == 0) {
@@ -85,7 +109,8 @@ void embed(const tissue::Model& model, const State& state, const Work& work, std
                 if (!deformation_gradient.empty()) deformation_gradient[p] = Mat3f(1.0f);
                 continue;
             }
-            raw_weights(shared.carriers, relative_to(model, rest_m[p], shared.centre_m), weight);
+            raw_weights(shared.steps, static_cast<std::size_t>(shared.carriers.count),
+                        relative_to(model, rest_m[p], shared.centre_m), weight);
             const auto f = blend(shared.fields, shared.carriers.count, weight.data());
             world_m[p] = rest_m[p] + displacement_at(f, rest_m[p] - shared.centre_m);
             if (!deformation_gradient.empty()) deformation_gradient[p] = deformation_gradient_of(f);
