@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 
 #include "calot/base/simd.h"
+#include <hwy/cache_control.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace calot::electric {
@@ -85,6 +86,15 @@ struct Rows {
     }
 };
 
+/// Calls for lines of arrays at a group some way ahead of the n-th, about the time that memory takes.
+template <class... Pointers>
+HWY_INLINE void call_for(const Level& level, std::int64_t n, std::int64_t end, Pointers... arrays) {
+    constexpr std::int64_t kAhead = 12;
+    if (n + kAhead >= end) return;
+    const std::int64_t at = level.groups[static_cast<std::size_t>(n + kAhead)].at;
+    (hwy::Prefetch(arrays + at), ...);
+}
+
 /// One value per material, for the lanes of a vector that `wanted` names; the others get anything.
 struct Lookup {
     using DI = hn::RebindToSigned<D>;
@@ -141,6 +151,7 @@ void faces(Level& level, const float* sigma, std::int64_t begin, std::int64_t en
     float* ground = level.ground.data();
     const std::int64_t step[3] = {1, level.row, level.plane};
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, sigma, sigma + level.plane, g[0], g[1], g[2], ground);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
             const V here = load(sigma + i);
@@ -158,6 +169,7 @@ void weights(Level& level, std::int64_t begin, std::int64_t end) {
     const Rows rows(level);
     float* weight = level.weight.data();
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, rows.gx, rows.gy, rows.gz, rows.ground, weight);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
             V sum = hn::Add(load(rows.ground + i), hn::Add(load(rows.gx + i), load(rows.gx + i - 1)));
@@ -219,6 +231,7 @@ double apply(Level& level, const float* p, std::int64_t begin, std::int64_t end)
     float* out = level.scratch.data();
     Sum sum;
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, p + level.plane, rows.gx, rows.gy, rows.gz, rows.ground, out);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = at + k;
@@ -256,6 +269,7 @@ Norms start(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::
     const V step = all(alpha);
     NormSums sums;
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, x, right, ax, weight);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = at + k;
@@ -275,6 +289,7 @@ Norms advance(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std
     const V step = all(alpha);
     NormSums sums;
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, x, right, p, ap, weight);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = at + k;
@@ -301,6 +316,7 @@ void direction(const Level& level, Krylov& krylov, const float* coarse, float be
     float* p = krylov.p.data();
     const V share = all(beta);
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, p, right, weight);
         const Level::Group& group = level.groups[static_cast<std::size_t>(n)];
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = group.at + k;
@@ -376,6 +392,7 @@ void heat(const Level& level, const float* sigma, const float* phi, float factor
     const Rows rows(level);
     const V half = all(0.5f * factor);
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, sigma, phi + level.plane, rows.gx, rows.gy, rows.gz, out);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
             const V conductivity = load(sigma + i), here = load(phi + i);

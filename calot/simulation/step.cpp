@@ -11,8 +11,12 @@ namespace calot::simulation {
 
 namespace {
 
-/// Tick of a frame in which blocks of the surface are redone.
-constexpr int kSurfaceTurn = 5;
+/// Ticks of a frame in which blocks of the surface are redone, the rest being for hexels that go: `count` from `first`
+/// on.
+struct SurfaceTurns {
+    int first, count;
+};
+constexpr SurfaceTurns kSurfaceTurns{5, 6};
 
 }  // namespace
 
@@ -55,10 +59,10 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     deformation::sever_burnt_links(model, state, exchange, work.deformation);
     clock.lap(Stage::topology);
 
-    // What is seen may wait for a tick in which the field does little; who asks for the mesh before gets it as it is
-    // now.
+    // What is seen may wait for ticks with little else to do; who asks for the mesh before gets it as it is now.
     work.surface.remove(exchange);
-    if (state.tick % model.frame_ticks == kSurfaceTurn) work.surface.redo_dirty_blocks();
+    const auto turn = static_cast<int>((state.tick - kSurfaceTurns.first) & (tissue::Model::frame_ticks - 1));
+    if (turn < kSurfaceTurns.count) work.surface.redo_dirty_blocks(kSurfaceTurns.count - turn);
     clock.lap(Stage::surface);
 
     work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s, input.suction);
