@@ -52,7 +52,8 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     clock.restart();
     thermal::remove_vaporised(model, state, exchange, work.thermal);
     list_gas(model, work);  // while the phyxels that carried it are still there
-    deformation::embed_points(model, state, work.deformation, work.gas_rest_m, work.gas_owner, work.gas_world_m);
+    deformation::embed_points(model, state, work.deformation, work.gas.rest_m, work.gas.owner, work.gas.world_m);
+    place_gas(model, work);
     clock.lap(Stage::removal);
 
     deformation::tear_overstretched(model, state, exchange, work.deformation);
@@ -65,7 +66,7 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     if (turn < kSurfaceTurns.count) work.surface.redo_dirty_blocks(kSurfaceTurns.count - turn);
     clock.lap(Stage::surface);
 
-    work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s, input.suction);
+    work.smoke.step(exchange, work.gas.event_m, state.tick, model.tick_s, input.suction);
     work.bleeding.step(model, state, exchange, input);
     clock.lap(Stage::smoke);
 

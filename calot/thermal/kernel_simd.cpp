@@ -410,11 +410,24 @@ HWY_INLINE Outcome step_vector(const HeatStep& step, const CellGroup& group, std
 }
 
 /// Calls for what a group will want from memory, so that it is there in time.
+template <bool exposed, bool changed, bool mixed>
 HWY_INLINE void call_for(const HeatStep& step, std::int64_t cell) {
     hwy::Prefetch(step.temperature_K + cell);
-    hwy::Prefetch(step.temperature_K + cell + step.furthest);
+    for (const std::int64_t side : {-step.furthest, step.furthest}) {  // across two lines
+        hwy::Prefetch(step.temperature_K + cell + side);
+        hwy::Prefetch(step.temperature_K + cell + side + kGroupCells - 1);
+    }
     hwy::Prefetch(step.enthalpy_J_per_m3 + cell);
     hwy::Prefetch(step.next_temperature_K + cell);
+    if constexpr (exposed) {
+        hwy::Prefetch(step.faces + cell);
+        hwy::Prefetch(step.share + cell);
+    }
+    if constexpr (changed) {
+        hwy::Prefetch(step.water_kg_per_m3 + cell);
+        hwy::Prefetch(step.damage + cell);
+    }
+    if constexpr (mixed) hwy::Prefetch(step.material + cell);
 }
 
 /// Groups of one kind.
@@ -428,7 +441,7 @@ HWY_NOINLINE void step_groups(const HeatStep& shared, Run& run, const GroupList&
         ConductSums sums;
         for (int n = from; n < to; ++n) {
             const unsigned place = list.places[n];
-            if (n + kAhead < list.count) call_for(step, run.cell(step, list.places[n + kAhead]));
+            if (n + kAhead < list.count) call_for<exposed, changed, mixed>(step, run.cell(step, list.places[n + kAhead]));
             const std::int64_t first = run.cell(step, place);
             const CellGroup& group = step.groups[first / kGroupCells];
             Outcome any{false, false};
