@@ -32,8 +32,14 @@ Elsewhere add_fixed_faces(Work& work, const Cells phi, float scale, Cells heat) 
         elsewhere.wire += static_cast<double>(wire);
         current += static_cast<double>(flow);
     }
-    for (const OuterFace& face : work.outer_faces) {
+    constexpr std::size_t kAhead = 12;  // of most, each has lines of its own
+    const std::size_t count = work.outer_faces.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const OuterFace& face = work.outer_faces[k];
         const auto cell = static_cast<std::size_t>(face.cell);
+        const auto ahead = static_cast<std::size_t>(work.outer_faces[std::min(k + kAhead, count - 1)].cell);
+        __builtin_prefetch(&phi[ahead]);
+        __builtin_prefetch(&heat[ahead]);
         const float level = scale * phi[cell], all = face.g * level * level, inside = face.inside * all;
         heat[cell] += inside;
         elsewhere.beyond += static_cast<double>(all - inside);

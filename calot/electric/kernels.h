@@ -96,7 +96,7 @@ struct Kernels {
     double (*apply)(Level& level, const float* p, std::int64_t begin, std::int64_t end);
     /// a . b
     double (*dot)(const Level& level, const float* a, const float* b, std::int64_t begin, std::int64_t end);
-    /// x = alpha x, right -= alpha scratch.
+    /// x = alpha x, where there is an unknown, else 0; right -= alpha scratch.
     Norms (*start)(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::int64_t end);
     /// x += alpha p, right -= alpha scratch.
     Norms (*advance)(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::int64_t end);

@@ -278,11 +278,12 @@ Norms start(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = at + k;
-            const V scaled = hn::Mul(step, load(x + i));
+            const V w = load(weight + i);
+            const V scaled = hn::IfThenElseZero(hn::Gt(w, all(0.0f)), hn::Mul(step, load(x + i)));
             const V rest = hn::Sub(load(right + i), hn::Mul(step, load(ax + i)));
             store(scaled, x + i);
             store(rest, right + i);
-            sums.add((n - begin) * kGroup + k, rest, load(weight + i));
+            sums.add((n - begin) * kGroup + k, rest, w);
         }
     }
     return sums.total();

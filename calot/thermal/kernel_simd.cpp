@@ -464,6 +464,10 @@ void step_blocks(const HeatStep& step, const std::int32_t* blocks, int count, Bl
         const std::int64_t begin = step.first + blocks[b] * kBlockCells, past = begin + kBlockCells;
         if (step.joule.density != nullptr) deposit(step, begin, past < step.last ? past : step.last, run.sums);
         const CellGroup* groups = step.groups + begin / kGroupCells;
+        if (b + 2 < count) {
+            const CellGroup* ahead = step.groups + (step.first + blocks[b + 2] * kBlockCells) / kGroupCells;
+            for (unsigned g = 0; g < kBlockGroups; g += 64 / sizeof(CellGroup)) hwy::Prefetch(ahead + g);
+        }
         for (std::uint32_t active = step.active->groups_of(blocks[b]); active != 0; active &= active - 1) {
             const auto g = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(active));
             const unsigned kind = groups[g].kind < kMixed ? groups[g].kind : unsigned{kMixed};
