@@ -53,7 +53,7 @@ void keep_hexels(const tissue::Model& model, tissue::State& state, Work& work, c
     const Window& window = work.window;
     const Level& fine = work.grid.levels[0];
     const double s = model.hexels.spacing_m;
-    work.sums = HeatSums{};
+    work.sums.clear(model.materials.size());
     float* out = state.joule_S_per_m3.data();
     for (int c = 0; c < window.cells; ++c)
         for (int b = 0; b < window.cells; ++b, out += window.cells) {
@@ -95,7 +95,7 @@ void keep_heat(const tissue::Model& model, tissue::State& state, Work& work) {
 
     const double s = model.hexels.spacing_m;
     state.field.tissue_S = 0.0;
-    for (std::size_t m = 0; m < work.sums.kept.size(); ++m) {
+    for (std::size_t m = 0; m < model.materials.size(); ++m) {
         const double heat_S = s * total(work.sums.kept[m]);
         state.field.tissue_S += heat_S;
         if (m >= tissue::kStrayMaterials) continue;

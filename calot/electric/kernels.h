@@ -79,6 +79,12 @@ struct HeatSums {
     std::array<Places, 256> kept{};             ///< by material, in hexels that are present
     Places rest{};                              ///< elsewhere
     std::array<float, 256> greatest{};          ///< of heat times conductivity: the square of the current density
+    /// Back to zero, for so many materials.
+    void clear(std::size_t materials) {
+        std::fill_n(kept.begin(), materials, Places{});
+        rest = {};
+        std::fill_n(greatest.begin(), materials, 0.0f);
+    }
 };
 
 struct Kernels {

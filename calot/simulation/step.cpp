@@ -16,7 +16,7 @@ namespace {
 struct SurfaceTurns {
     int first, count;
 };
-constexpr SurfaceTurns kSurfaceTurns{5, 6};
+constexpr SurfaceTurns kSurfaceTurns{6, 5};
 
 }  // namespace
 
