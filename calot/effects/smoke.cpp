@@ -1,6 +1,7 @@
 #include "calot/effects/smoke.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -73,16 +74,31 @@ void Smoke::step(const tissue::Exchange& exchange, const std::vector<Vec3f>& wor
 
     const Stride stride(parameters_, kMoveEvery * tick_s, static_cast<double>(tick) * tick_s, suction);
     const auto turn = static_cast<std::uint32_t>(tick % kMoveEvery);
-    std::size_t kept = 0;
+    SwirlBatch swirls;
+    std::array<SmokeParticle*, SwirlBatch::kPlaces> moving;
+    const auto move_all = [&] {
+        curl_noise(swirls);
+        for (std::size_t k = 0; k < swirls.count; ++k)
+            move(*moving[k], stride, kAirSpeed_m_per_s * Vec3f(swirls.velocity[0][k], swirls.velocity[1][k],
+                                                               swirls.velocity[2][k]));
+        swirls.count = 0;
+    };
     for (SmokeParticle& particle : particles_) {
-        if (particle.seed % kMoveEvery == turn) {
-            move(particle, stride);
-            if (particle.age_s > kOldest_s || mass(particle) < kThinnest_kg) {
-                faded_kg_ += mass(particle);
-                continue;
-            }
+        if (particle.seed % kMoveEvery != turn) continue;
+        const Vec3f place = particle.position_m / kSwirl_m + stride.drift;
+        for (int axis = 0; axis < 3; ++axis) swirls.place[static_cast<std::size_t>(axis)][swirls.count] = place[axis];
+        moving[swirls.count++] = &particle;
+        if (swirls.count == moving.size()) move_all();
+    }
+    move_all();
+    std::size_t kept = 0;
+    for (const SmokeParticle& particle : particles_) {
+        if (particle.seed % kMoveEvery == turn && (particle.age_s > kOldest_s || mass(particle) < kThinnest_kg)) {
+            faded_kg_ += mass(particle);
+            continue;
         }
-        particles_[kept++] = particle;
+        if (&particle != &particles_[kept]) particles_[kept] = particle;
+        ++kept;
     }
     particles_.resize(kept);
 
@@ -147,8 +163,7 @@ void Smoke::emit(double mass_kg) {
     pending_.heat_kgK = pending_kg() * temperature_K;
 }
 
-void Smoke::move(SmokeParticle& particle, const Stride& stride) {
-    const Vec3f air = kAirSpeed_m_per_s * curl_noise(particle.position_m / kSwirl_m + stride.drift);
+void Smoke::move(SmokeParticle& particle, const Stride& stride, const Vec3f& air) {
     particle.velocity_m_per_s = air + stride.slowed * (particle.velocity_m_per_s - air);
     particle.velocity_m_per_s += stride.dt_s * particle.lift_m_per_s2 * stride.up;
     particle.position_m += stride.dt_s * particle.velocity_m_per_s;

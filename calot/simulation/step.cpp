@@ -1,5 +1,7 @@
 #include "calot/simulation/step.h"
 
+#include <algorithm>
+
 #include "calot/base/parallel.h"
 #include "calot/deformation/embedding.h"
 #include "calot/deformation/integrate.h"
@@ -12,7 +14,7 @@ namespace calot::simulation {
 namespace {
 
 /// Ticks of a frame in which blocks of the surface are redone, the rest being for hexels that go: `count` from `first`
-/// on.
+/// on. What comes late in them stays for the next, rather than make the last long.
 struct SurfaceTurns {
     int first, count;
 };
@@ -63,7 +65,7 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     // What is seen may wait for ticks with little else to do; who asks for the mesh before gets it as it is now.
     work.surface.remove(exchange);
     const auto turn = static_cast<int>((state.tick - kSurfaceTurns.first) & (tissue::Model::frame_ticks - 1));
-    if (turn < kSurfaceTurns.count) work.surface.redo_dirty_blocks(kSurfaceTurns.count - turn);
+    if (turn < kSurfaceTurns.count) work.surface.redo_dirty_blocks(std::max(kSurfaceTurns.count - turn, 2));
     clock.lap(Stage::surface);
 
     work.smoke.step(exchange, work.gas.event_m, state.tick, model.tick_s, input.suction);

@@ -151,8 +151,9 @@ void Surface::Impl::mark(const Int3& low, const Int3& high, std::uint8_t what) {
 /// places of vertices in the blocks about it, so they come when all edges are known. What is removed in between marks
 /// its blocks anew.
 void Surface::Impl::redo_marked(std::size_t turns) {
-    std::size_t left = (2 * redo_blocks.size() + write_blocks.size() + turns - 1) / turns;
-    for (; left > 0 && !redo_blocks.empty(); --left) {
+    constexpr std::size_t kEdgesCost = 2;  // in blocks of triangles
+    std::size_t left = ((kEdgesCost + 1) * redo_blocks.size() + write_blocks.size() + turns - 1) / turns;
+    for (; left > 0 && !redo_blocks.empty(); left -= std::min(left, kEdgesCost)) {
         const std::int32_t block = redo_blocks.back();
         redo_blocks.pop_back();
         redo_edges(block);
