@@ -76,11 +76,17 @@ void Smoke::step(const tissue::Exchange& exchange, const std::vector<Vec3f>& wor
     const auto turn = static_cast<std::uint32_t>(tick % kMoveEvery);
     SwirlBatch swirls;
     std::array<SmokeParticle*, SwirlBatch::kPlaces> moving;
+    const auto is_over = [](const SmokeParticle& particle) {
+        return particle.age_s > kOldest_s || mass(particle) < kThinnest_kg;
+    };
+    bool any_over = false;
     const auto move_all = [&] {
         curl_noise(swirls);
-        for (std::size_t k = 0; k < swirls.count; ++k)
-            move(*moving[k], stride, kAirSpeed_m_per_s * Vec3f(swirls.velocity[0][k], swirls.velocity[1][k],
-                                                               swirls.velocity[2][k]));
+        for (std::size_t k = 0; k < swirls.count; ++k) {
+            const Vec3f swirl(swirls.velocity[0][k], swirls.velocity[1][k], swirls.velocity[2][k]);
+            move(*moving[k], stride, kAirSpeed_m_per_s * swirl);
+            any_over = any_over || is_over(*moving[k]);
+        }
         swirls.count = 0;
     };
     for (SmokeParticle& particle : particles_) {
@@ -91,16 +97,12 @@ void Smoke::step(const tissue::Exchange& exchange, const std::vector<Vec3f>& wor
         if (swirls.count == moving.size()) move_all();
     }
     move_all();
-    std::size_t kept = 0;
-    for (const SmokeParticle& particle : particles_) {
-        if (particle.seed % kMoveEvery == turn && (particle.age_s > kOldest_s || mass(particle) < kThinnest_kg)) {
-            faded_kg_ += mass(particle);
-            continue;
-        }
-        if (&particle != &particles_[kept]) particles_[kept] = particle;
-        ++kept;
-    }
-    particles_.resize(kept);
+    if (any_over)
+        std::erase_if(particles_, [&](const SmokeParticle& particle) {
+            const bool over = particle.seed % kMoveEvery == turn && is_over(particle);
+            if (over) faded_kg_ += mass(particle);
+            return over;
+        });
 
     // The fuller the room and the more gas waits, the larger the puffs; at the limit gas waits for a place.
     for (int puff = 0; puff < kPuffsPerTick && particles_.size() < parameters_.max_particles; ++puff) {
