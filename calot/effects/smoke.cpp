@@ -1,6 +1,7 @@
 #include "calot/effects/smoke.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -73,18 +74,35 @@ void Smoke::step(const tissue::Exchange& exchange, const std::vector<Vec3f>& wor
 
     const Stride stride(parameters_, kMoveEvery * tick_s, static_cast<double>(tick) * tick_s, suction);
     const auto turn = static_cast<std::uint32_t>(tick % kMoveEvery);
-    std::size_t kept = 0;
-    for (SmokeParticle& particle : particles_) {
-        if (particle.seed % kMoveEvery == turn) {
-            move(particle, stride);
-            if (particle.age_s > kOldest_s || mass(particle) < kThinnest_kg) {
-                faded_kg_ += mass(particle);
-                continue;
-            }
+    SwirlBatch swirls;
+    std::array<SmokeParticle*, SwirlBatch::kPlaces> moving;
+    const auto is_over = [](const SmokeParticle& particle) {
+        return particle.age_s > kOldest_s || mass(particle) < kThinnest_kg;
+    };
+    bool any_over = false;
+    const auto move_all = [&] {
+        curl_noise(swirls);
+        for (std::size_t k = 0; k < swirls.count; ++k) {
+            const Vec3f swirl(swirls.velocity[0][k], swirls.velocity[1][k], swirls.velocity[2][k]);
+            move(*moving[k], stride, kAirSpeed_m_per_s * swirl);
+            any_over = any_over || is_over(*moving[k]);
         }
-        particles_[kept++] = particle;
+        swirls.count = 0;
+    };
+    for (SmokeParticle& particle : particles_) {
+        if (particle.seed % kMoveEvery != turn) continue;
+        const Vec3f place = particle.position_m / kSwirl_m + stride.drift;
+        for (int axis = 0; axis < 3; ++axis) swirls.place[static_cast<std::size_t>(axis)][swirls.count] = place[axis];
+        moving[swirls.count++] = &particle;
+        if (swirls.count == moving.size()) move_all();
     }
-    particles_.resize(kept);
+    move_all();
+    if (any_over)
+        std::erase_if(particles_, [&](const SmokeParticle& particle) {
+            const bool over = particle.seed % kMoveEvery == turn && is_over(particle);
+            if (over) faded_kg_ += mass(particle);
+            return over;
+        });
 
     // The fuller the room and the more gas waits, the larger the puffs; at the limit gas waits for a place.
     for (int puff = 0; puff < kPuffsPerTick && particles_.size() < parameters_.max_particles; ++puff) {
@@ -147,8 +165,7 @@ void Smoke::emit(double mass_kg) {
     pending_.heat_kgK = pending_kg() * temperature_K;
 }
 
-void Smoke::move(SmokeParticle& particle, const Stride& stride) {
-    const Vec3f air = kAirSpeed_m_per_s * curl_noise(particle.position_m / kSwirl_m + stride.drift);
+void Smoke::move(SmokeParticle& particle, const Stride& stride, const Vec3f& air) {
     particle.velocity_m_per_s = air + stride.slowed * (particle.velocity_m_per_s - air);
     particle.velocity_m_per_s += stride.dt_s * particle.lift_m_per_s2 * stride.up;
     particle.position_m += stride.dt_s * particle.velocity_m_per_s;

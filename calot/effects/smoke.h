@@ -77,7 +77,7 @@ class Smoke {
     void collect(const tissue::Exchange& exchange, const std::vector<Vec3f>& world_m);
     void emit(double mass_kg);
     struct Stride;  ///< what all particles that move in a tick share
-    void move(SmokeParticle& particle, const Stride& stride);
+    void move(SmokeParticle& particle, const Stride& stride, const Vec3f& air);  ///< air: its velocity there
 
     SmokeParameters parameters_;
     std::vector<SmokeParticle> particles_;

@@ -26,12 +26,25 @@ void gather_conductivity(const tissue::Model& model, Work& work) {
     const Level& fine = work.grid.levels[0];
     const Int3 size = window.end - window.begin;
     const bool whole = size.x == window.cells && size.y == window.cells && size.z == window.cells;
+    // Rows are short and far apart: what one will want from memory is called for some rows ahead.
+    constexpr int kAhead = 6;
+    const auto call_for = [&](int b, int c) {
+        if (b >= window.end.y) b -= size.y, ++c;
+        if (c >= window.end.z) return;
+        const std::int64_t first = model.hexels.index(window.to_hexel({window.begin.x, b, c}));
+        for (std::int64_t k = 0; k < size.x + kGroup - 1; k += kGroup)
+            for (const float* values : {work.conductivity.rest_S_per_m, work.conductivity.enthalpy_J_per_m3,
+                                        work.conductivity.water_kg_per_m3})
+                __builtin_prefetch(values + first + std::min<std::int64_t>(k, size.x - 1));
+    };
     if (!whole) std::fill(work.sigma_S_per_m.begin(), work.sigma_S_per_m.end(), 0.0f);
     parallel_for("electric.gather", window.begin.z, window.end.z, fine.task_planes(), [&](std::int64_t low, std::int64_t high) {
         for (int c = static_cast<int>(low); c < high; ++c)
-            for (int b = window.begin.y; b < window.end.y; ++b)
+            for (int b = window.begin.y; b < window.end.y; ++b) {
+                call_for(b + kAhead, c);
                 work.grid.kernels.gather(work.conductivity, model.hexels.index(window.to_hexel({window.begin.x, b, c})),
                                          size.x, work.sigma_S_per_m.data() + fine.index(window.begin.x, b, c));
+            }
     });
 }
 
@@ -40,22 +53,28 @@ void gather_conductivity(const tissue::Model& model, Work& work) {
 void list_groups(Work& work) {
     Level& fine = work.grid.levels[0];
     Krylov& krylov = work.grid.krylov;
-    fine.groups.clear();
+    fine.groups.resize(work.alive.size());
+    const float* sigma = work.sigma_S_per_m.data();
+    std::size_t count = 0;
     for (std::size_t n = 0; n < work.alive.size(); ++n) {
-        const std::int64_t at = fine.all[n].at;
-        std::uint32_t bits[kGroup], any = 0;  // of conductivities, none of which is negative
-        std::memcpy(bits, work.sigma_S_per_m.data() + at, sizeof(bits));
-        for (const std::uint32_t one : bits) any |= one;
-        if (any != 0) {
-            fine.groups.push_back(fine.all[n]);
-            work.alive[n] = 1;
-        } else if (work.alive[n] != 0) {
-            work.alive[n] = 0;
-            for (auto* values : {&fine.g[0], &fine.g[1], &fine.g[2], &fine.ground, &fine.weight, &fine.right,
-                                 &fine.solution, &fine.scratch, &krylov.x, &krylov.p})
-                std::fill_n(values->begin() + at, kGroup, 0.0f);
+        const Level::Group group = fine.all[n];
+        std::uint64_t any = 0;  // of the bits of conductivities, none of which is negative
+        for (std::int64_t k = 0; k < kGroup; k += 2) {
+            std::uint64_t two;
+            std::memcpy(&two, sigma + group.at + k, sizeof(two));
+            any |= two;
         }
+        const std::uint8_t alive = any != 0 ? 1 : 0;
+        fine.groups[count] = group;
+        count += alive;
+        if (alive == work.alive[n]) continue;
+        work.alive[n] = alive;
+        if (alive != 0) continue;
+        for (auto* values : {&fine.g[0], &fine.g[1], &fine.g[2], &fine.ground, &fine.weight, &fine.right, &fine.solution,
+                             &fine.scratch, &krylov.x, &krylov.p})
+            std::fill_n(values->begin() + group.at, kGroup, 0.0f);
     }
+    fine.groups.resize(count);
 }
 
 /// Arcs keep dried tissue conducting in a hexel at the metal and in those behind its faces.

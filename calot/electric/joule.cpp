@@ -32,8 +32,14 @@ Elsewhere add_fixed_faces(Work& work, const Cells phi, float scale, Cells heat) 
         elsewhere.wire += static_cast<double>(wire);
         current += static_cast<double>(flow);
     }
-    for (const OuterFace& face : work.outer_faces) {
+    constexpr std::size_t kAhead = 12;  // of most, each has lines of its own
+    const std::size_t count = work.outer_faces.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const OuterFace& face = work.outer_faces[k];
         const auto cell = static_cast<std::size_t>(face.cell);
+        const auto ahead = static_cast<std::size_t>(work.outer_faces[std::min(k + kAhead, count - 1)].cell);
+        __builtin_prefetch(&phi[ahead]);
+        __builtin_prefetch(&heat[ahead]);
         const float level = scale * phi[cell], all = face.g * level * level, inside = face.inside * all;
         heat[cell] += inside;
         elsewhere.beyond += static_cast<double>(all - inside);
@@ -47,7 +53,7 @@ void keep_hexels(const tissue::Model& model, tissue::State& state, Work& work, c
     const Window& window = work.window;
     const Level& fine = work.grid.levels[0];
     const double s = model.hexels.spacing_m;
-    work.sums = HeatSums{};
+    work.sums.clear(model.materials.size());
     float* out = state.joule_S_per_m3.data();
     for (int c = 0; c < window.cells; ++c)
         for (int b = 0; b < window.cells; ++b, out += window.cells) {
@@ -89,7 +95,7 @@ void keep_heat(const tissue::Model& model, tissue::State& state, Work& work) {
 
     const double s = model.hexels.spacing_m;
     state.field.tissue_S = 0.0;
-    for (std::size_t m = 0; m < work.sums.kept.size(); ++m) {
+    for (std::size_t m = 0; m < model.materials.size(); ++m) {
         const double heat_S = s * total(work.sums.kept[m]);
         state.field.tissue_S += heat_S;
         if (m >= tissue::kStrayMaterials) continue;

@@ -79,6 +79,12 @@ struct HeatSums {
     std::array<Places, 256> kept{};             ///< by material, in hexels that are present
     Places rest{};                              ///< elsewhere
     std::array<float, 256> greatest{};          ///< of heat times conductivity: the square of the current density
+    /// Back to zero, for so many materials.
+    void clear(std::size_t materials) {
+        std::fill_n(kept.begin(), materials, Places{});
+        rest = {};
+        std::fill_n(greatest.begin(), materials, 0.0f);
+    }
 };
 
 struct Kernels {
@@ -96,7 +102,7 @@ struct Kernels {
     double (*apply)(Level& level, const float* p, std::int64_t begin, std::int64_t end);
     /// a . b
     double (*dot)(const Level& level, const float* a, const float* b, std::int64_t begin, std::int64_t end);
-    /// x = alpha x, right -= alpha scratch.
+    /// x = alpha x, where there is an unknown, else 0; right -= alpha scratch.
     Norms (*start)(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::int64_t end);
     /// x += alpha p, right -= alpha scratch.
     Norms (*advance)(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::int64_t end);

@@ -106,7 +106,7 @@ Norms start(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::
     for (std::int64_t n = begin; n < end; ++n)
         for (std::int64_t k = 0; k < kGroup; ++k) {
             const auto i = static_cast<std::size_t>(level.groups[static_cast<std::size_t>(n)].at + k);
-            krylov.x[i] = alpha * krylov.x[i];
+            krylov.x[i] = level.weight[i] > 0.0f ? alpha * krylov.x[i] : 0.0f;
             level.right[i] = level.right[i] - alpha * level.scratch[i];
             const std::int64_t place = (n - begin) * kGroup + k;
             residual.add(place, level.right[i] * level.right[i]);

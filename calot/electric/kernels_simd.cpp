@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 
 #include "calot/base/simd.h"
+#include <hwy/cache_control.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace calot::electric {
@@ -85,6 +86,15 @@ struct Rows {
     }
 };
 
+/// Calls for lines of arrays at a group some way ahead of the n-th, about the time that memory takes.
+template <class... Pointers>
+HWY_INLINE void call_for(const Level& level, std::int64_t n, std::int64_t end, Pointers... arrays) {
+    constexpr std::int64_t kAhead = 12;
+    if (n + kAhead >= end) return;
+    const std::int64_t at = level.groups[static_cast<std::size_t>(n + kAhead)].at;
+    (hwy::Prefetch(arrays + at), ...);
+}
+
 /// One value per material, for the lanes of a vector that `wanted` names; the others get anything.
 struct Lookup {
     using DI = hn::RebindToSigned<D>;
@@ -139,16 +149,22 @@ void gather(const Conductivity& tissue, std::int64_t first, std::int64_t count, 
 void faces(Level& level, const float* sigma, std::int64_t begin, std::int64_t end) {
     float* const g[3] = {level.g[0].data(), level.g[1].data(), level.g[2].data()};
     float* ground = level.ground.data();
-    const std::int64_t step[3] = {1, level.row, level.plane};
+    const D d;
+    const std::int64_t row = level.row, plane = level.plane;
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, sigma, sigma + level.plane, g[0], g[1], g[2], ground);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
             const V here = load(sigma + i);
-            for (int axis = 0; axis < 3; ++axis) {
-                const V there = load(sigma + i + step[axis]);
-                const V twice = hn::Mul(hn::Mul(all(2.0f), here), there);
-                store(hn::Div(twice, hn::Max(hn::Add(here, there), all(1e-30f))), g[axis] + i);
-            }
+            auto mean = [&](V there) HWY_ATTR {
+                return hn::Div(hn::Mul(hn::Mul(all(2.0f), here), there), hn::Max(hn::Add(here, there), all(1e-30f)));
+            };
+            // At rest and inside one tissue, all three are the same; a division takes as long as all the rest.
+            const V along = load(sigma + i + 1), beside = load(sigma + i + row), behind = load(sigma + i + plane);
+            const V gx = mean(along);
+            store(gx, g[0] + i);
+            store(hn::AllTrue(d, hn::Eq(beside, along)) ? gx : mean(beside), g[1] + i);
+            store(hn::AllTrue(d, hn::Eq(behind, along)) ? gx : mean(behind), g[2] + i);
             store(all(0.0f), ground + i);
         }
     }
@@ -158,6 +174,7 @@ void weights(Level& level, std::int64_t begin, std::int64_t end) {
     const Rows rows(level);
     float* weight = level.weight.data();
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, rows.gx, rows.gy, rows.gz, rows.ground, weight);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
             V sum = hn::Add(load(rows.ground + i), hn::Add(load(rows.gx + i), load(rows.gx + i - 1)));
@@ -219,6 +236,7 @@ double apply(Level& level, const float* p, std::int64_t begin, std::int64_t end)
     float* out = level.scratch.data();
     Sum sum;
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, p + level.plane, rows.gx, rows.gy, rows.gz, rows.ground, out);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = at + k;
@@ -256,14 +274,16 @@ Norms start(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std::
     const V step = all(alpha);
     NormSums sums;
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, x, right, ax, weight);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = at + k;
-            const V scaled = hn::Mul(step, load(x + i));
+            const V w = load(weight + i);
+            const V scaled = hn::IfThenElseZero(hn::Gt(w, all(0.0f)), hn::Mul(step, load(x + i)));
             const V rest = hn::Sub(load(right + i), hn::Mul(step, load(ax + i)));
             store(scaled, x + i);
             store(rest, right + i);
-            sums.add((n - begin) * kGroup + k, rest, load(weight + i));
+            sums.add((n - begin) * kGroup + k, rest, w);
         }
     }
     return sums.total();
@@ -275,6 +295,7 @@ Norms advance(Level& level, Krylov& krylov, float alpha, std::int64_t begin, std
     const V step = all(alpha);
     NormSums sums;
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, x, right, p, ap, weight);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = at + k;
@@ -301,6 +322,7 @@ void direction(const Level& level, Krylov& krylov, const float* coarse, float be
     float* p = krylov.p.data();
     const V share = all(beta);
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, p, right, weight);
         const Level::Group& group = level.groups[static_cast<std::size_t>(n)];
         for (std::int64_t k = 0; k < kGroup; k += lanes()) {
             const std::int64_t i = group.at + k;
@@ -376,6 +398,7 @@ void heat(const Level& level, const float* sigma, const float* phi, float factor
     const Rows rows(level);
     const V half = all(0.5f * factor);
     for (std::int64_t n = begin; n < end; ++n) {
+        call_for(level, n, end, sigma, phi + level.plane, rows.gx, rows.gy, rows.gz, out);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
             const V conductivity = load(sigma + i), here = load(phi + i);
@@ -466,7 +489,8 @@ void split(const Conductivity& tissue, const float* heat, const float* sigma, fl
                 const V density = hn::Mul(load(heat + low + k), load(sigma + low + k));
                 most = hn::Max(most, hn::IfThenElseZero(lanes_of(alike, k), density));
             }
-            sums.greatest[m] = std::max(sums.greatest[m], hn::GetLane(hn::MaxOfLanes(D(), most)));
+            if (!hn::AllFalse(D(), hn::Gt(most, all(sums.greatest[m]))))
+                sums.greatest[m] = hn::GetLane(hn::MaxOfLanes(D(), most));
         }
     }
     for (; low < count; ++low) one(low);

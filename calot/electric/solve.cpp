@@ -16,10 +16,12 @@ std::size_t in_window(const Window& window, const Int3& cell) {
     return static_cast<std::size_t>(cell.x + window.cells * (cell.y + window.cells * cell.z));
 }
 
-/// The last potential as a first guess. Where the window has moved, cells that it has not seen before take the value of
-/// the nearest that it has. Cells without an unknown are at 0.
+/// The last potential as a first guess. While the window stays it lies in krylov.x already; what lost its unknown since
+/// is put to 0 by begin(). Where the window has moved, cells that it has not seen before take the value of the nearest
+/// that it has. Cells without an unknown are at 0.
 void warm_start(const tissue::State& state, Work& work) {
     const Window& window = work.window;
+    if (work.kept == state.potential.data() && window.low == state.field_low) return;
     const Level& fine = work.grid.levels[0];
     const Int3 moved = window.low - state.field_low;
     const Int3 shift(moved[window.axis.x], moved[window.axis.y], moved[window.axis.z]);
@@ -42,17 +44,19 @@ void warm_start(const tissue::State& state, Work& work) {
         }
 }
 
-void keep_potential(tissue::State& state, const Work& work, float scale) {
+/// Into the state, and for the next solve.
+void keep_potential(tissue::State& state, Work& work, float scale) {
     const Window& window = work.window;
     const Level& fine = work.grid.levels[0];
     float* __restrict kept = state.potential.data();
     for (int c = 0; c < window.cells; ++c)
         for (int b = 0; b < window.cells; ++b) {
-            const float* __restrict x = work.grid.krylov.x.data() + fine.index(0, b, c);
-            for (int a = 0; a < window.cells; ++a) kept[a] = scale * x[a];
+            float* __restrict x = work.grid.krylov.x.data() + fine.index(0, b, c);
+            for (int a = 0; a < window.cells; ++a) kept[a] = x[a] = scale * x[a];
             kept += window.cells;
         }
     state.field_low = window.low;
+    work.kept = state.potential.data();
 }
 
 }  // namespace
@@ -88,6 +92,7 @@ WorkPtr make_work(const tissue::Model& model, const Kernels& kernels) {
 void prepare(const tissue::State& state, Work& work) {
     build_coarse(work.grid);
     warm_start(state, work);
+    work.kept = nullptr;  // until this solve is kept
 }
 
 void begin_field(Work& work) {

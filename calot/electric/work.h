@@ -39,6 +39,7 @@ struct Work {
     std::vector<OuterFace> outer_faces;
     std::vector<RightEntry> right;
     bool finite = true;  ///< the potential, of the last solve
+    const float* kept = nullptr;  ///< State::potential that krylov.x is, in the window at State::field_low
     double scale = 1.0;  ///< its best multiple
     HeatSums sums;
 

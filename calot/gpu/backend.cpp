@@ -99,7 +99,8 @@ void Backend::step(const tissue::Model& model, tissue::State& state, simulation:
 
         r.heat.remove_vaporised(model, state, exchange);
         simulation::list_gas(model, work);  // while the phyxels that carried it are still there
-        r.deformation.embed_points(work.gas_rest_m, work.gas_owner, work.gas_world_m);
+        r.deformation.embed_points(work.gas.rest_m, work.gas.owner, work.gas.world_m);
+        simulation::place_gas(model, work);
         clock.lap(Stage::removal);
 
         r.deformation.tear_and_sever(state, exchange);
@@ -109,7 +110,7 @@ void Backend::step(const tissue::Model& model, tissue::State& state, simulation:
         clock.lap(Stage::surface);  // made when somebody wants to see it
 
         fetch_about_breaches(model, state, work.bleeding);
-        work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s, input.suction);
+        work.smoke.step(exchange, work.gas.event_m, state.tick, model.tick_s, input.suction);
         work.bleeding.step(model, state, exchange, input);
         clock.lap(Stage::smoke);
     });

@@ -47,9 +47,10 @@ Work::Work(const tissue::Model& model, const tissue::State& state, const instrum
       smoke(smoke),
       bleeding(model) {
     tissue::reserve_exchange(model, exchange);
-    gas_rest_m.reserve(exchange.gas.capacity());
-    gas_world_m.reserve(exchange.gas.capacity());
-    gas_owner.reserve(exchange.gas.capacity());
+    const std::size_t most = exchange.gas.capacity();
+    for (auto* places : {&gas.rest_m, &gas.world_m, &gas.event_m}) places->reserve(most);
+    for (auto* places : {&gas.owner, &gas.phyxel}) places->reserve(most);
+    gas.source.reserve(most);
     surface.rebuild(model, state);
 }
 

@@ -1,5 +1,7 @@
 #include "calot/simulation/step.h"
 
+#include <algorithm>
+
 #include "calot/base/parallel.h"
 #include "calot/deformation/embedding.h"
 #include "calot/deformation/integrate.h"
@@ -11,8 +13,12 @@ namespace calot::simulation {
 
 namespace {
 
-/// Tick of a frame in which blocks of the surface are redone.
-constexpr int kSurfaceTurn = 5;
+/// Ticks of a frame in which blocks of the surface are redone, the rest being for hexels that go: `count` from `first`
+/// on. What comes late in them stays for the next, rather than make the last long.
+struct SurfaceTurns {
+    int first, count;
+};
+constexpr SurfaceTurns kSurfaceTurns{6, 5};
 
 }  // namespace
 
@@ -48,20 +54,21 @@ void step(const tissue::Model& model, tissue::State& state, Work& work, const ti
     clock.restart();
     thermal::remove_vaporised(model, state, exchange, work.thermal);
     list_gas(model, work);  // while the phyxels that carried it are still there
-    deformation::embed_points(model, state, work.deformation, work.gas_rest_m, work.gas_owner, work.gas_world_m);
+    deformation::embed_points(model, state, work.deformation, work.gas.rest_m, work.gas.owner, work.gas.world_m);
+    place_gas(model, work);
     clock.lap(Stage::removal);
 
     deformation::tear_overstretched(model, state, exchange, work.deformation);
     deformation::sever_burnt_links(model, state, exchange, work.deformation);
     clock.lap(Stage::topology);
 
-    // What is seen may wait for a tick in which the field does little; who asks for the mesh before gets it as it is
-    // now.
+    // What is seen may wait for ticks with little else to do; who asks for the mesh before gets it as it is now.
     work.surface.remove(exchange);
-    if (state.tick % model.frame_ticks == kSurfaceTurn) work.surface.redo_dirty_blocks();
+    const auto turn = static_cast<int>((state.tick - kSurfaceTurns.first) & (tissue::Model::frame_ticks - 1));
+    if (turn < kSurfaceTurns.count) work.surface.redo_dirty_blocks(std::max(kSurfaceTurns.count - turn, 2));
     clock.lap(Stage::surface);
 
-    work.smoke.step(exchange, work.gas_world_m, state.tick, model.tick_s, input.suction);
+    work.smoke.step(exchange, work.gas.event_m, state.tick, model.tick_s, input.suction);
     work.bleeding.step(model, state, exchange, input);
     clock.lap(Stage::smoke);
 

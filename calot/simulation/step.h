@@ -25,6 +25,15 @@ inline constexpr int kStages = 8;
 inline constexpr std::array<const char*, kStages> kStageNames{"contact", "deformation", "electric", "heat",
                                                               "removal", "topology",    "surface",  "smoke"};
 
+/// Where Exchange::gas comes from. What comes from one phyxel hangs on its first event there: `source`.
+struct GasPlaces {
+    std::vector<Vec3f> rest_m, world_m;      ///< of the sources
+    std::vector<std::int64_t> owner;         ///< hexels of the sources
+    std::vector<std::int64_t> phyxel;        ///< of the sources
+    std::vector<std::int32_t> source;        ///< of each event
+    std::vector<Vec3f> event_m;              ///< in the world, of each event
+};
+
 /// Scratch of all rooms, with what they exchange and how long the stages of the last tick took.
 struct Work {
     instruments::HookShape hook;
@@ -36,8 +45,7 @@ struct Work {
     surface::Surface surface;
     effects::Smoke smoke;
     effects::Bleeding bleeding;
-    std::vector<Vec3f> gas_rest_m, gas_world_m;  ///< places of Exchange::gas
-    std::vector<std::int64_t> gas_owner;
+    GasPlaces gas;
     std::array<float, kStages> stage_us{};  ///< wall time of the last tick's stages
 
     Work(const tissue::Model& model, const tissue::State& state, const instruments::HookShape& hook,

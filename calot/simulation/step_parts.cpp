@@ -57,13 +57,31 @@ void remember_instruments(tissue::State& state, const tissue::Exchange& exchange
 }
 
 void list_gas(const tissue::Model& model, Work& work) {
-    work.gas_rest_m.clear();
-    work.gas_owner.clear();
+    GasPlaces& gas = work.gas;
+    gas.rest_m.clear();
+    gas.owner.clear();
+    gas.phyxel.clear();
+    gas.source.clear();
     for (const tissue::GasEvent& event : work.exchange.gas) {
-        work.gas_rest_m.push_back(Vec3f(model.hexels.centre_m(event.hexel)));
-        work.gas_owner.push_back(event.hexel);
+        const std::int64_t phyxel = model.phyxel_of(model.hexels.coordinates(event.hexel));
+        const auto found = std::find(gas.phyxel.begin(), gas.phyxel.end(), phyxel);
+        gas.source.push_back(static_cast<std::int32_t>(found - gas.phyxel.begin()));
+        if (found != gas.phyxel.end()) continue;
+        gas.phyxel.push_back(phyxel);
+        gas.owner.push_back(event.hexel);
+        gas.rest_m.push_back(Vec3f(model.hexels.centre_m(event.hexel)));
     }
-    work.gas_world_m.resize(work.gas_rest_m.size());
+    gas.world_m.resize(gas.rest_m.size());
+}
+
+void place_gas(const tissue::Model& model, Work& work) {
+    GasPlaces& gas = work.gas;
+    gas.event_m.clear();
+    for (std::size_t k = 0; k < gas.source.size(); ++k) {
+        const auto source = static_cast<std::size_t>(gas.source[k]);
+        const Vec3f rest_m(model.hexels.centre_m(work.exchange.gas[k].hexel));
+        gas.event_m.push_back(gas.world_m[source] + (rest_m - gas.rest_m[source]));
+    }
 }
 
 }  // namespace calot::simulation

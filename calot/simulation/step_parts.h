@@ -36,7 +36,9 @@ deformation::NearReach near_reach(const tissue::Model& model, const tissue::Stat
 void find_contacts(const tissue::Model& model, tissue::State& state, Work& work);
 /// After the tissue has moved: poses for the next tick's velocities, forces.
 void remember_instruments(tissue::State& state, const tissue::Exchange& exchange, const tissue::Input& input);
-/// Where this tick's gas came from, at rest: Work::gas_rest_m and gas_owner, with room for gas_world_m.
+/// Where this tick's gas came from, at rest: the sources of Work::gas, with room for their world_m.
 void list_gas(const tissue::Model& model, Work& work);
+/// Once the sources are placed in the world: all events, shifted from their sources as at rest.
+void place_gas(const tissue::Model& model, Work& work);
 
 }  // namespace calot::simulation

@@ -17,6 +17,7 @@ namespace {
 // What is to be redone in a block.
 constexpr std::uint8_t kVertices = 1;   ///< its edges are cut anew, or the field at an end of them changed
 constexpr std::uint8_t kTriangles = 2;  ///< its cubes changed, or the places of the vertices that they refer to
+constexpr std::uint8_t kWrite = 4;      ///< its triangles, once the edges of all blocks are known
 
 /// Arrays that grow with a pool, never shrink.
 template <class T>
@@ -51,9 +52,10 @@ struct Surface::Impl {
     std::vector<std::uint16_t> corner;                ///< three a triangle, by triangle_range; CornerCode
 
     OldBlock old;
-    std::vector<Int3> removed;              ///< points
-    std::vector<std::uint8_t> redo;         ///< per block
-    std::vector<std::int32_t> redo_blocks;  ///< those with redo != 0
+    std::vector<Int3> removed;               ///< points, since redo_blocks was last empty
+    std::vector<std::uint8_t> redo;          ///< per block
+    std::vector<std::int32_t> redo_blocks;   ///< those with kVertices or kTriangles
+    std::vector<std::int32_t> write_blocks;  ///< those with kWrite
 
     std::uint64_t version = 0;
     // Gathered when asked for
@@ -66,7 +68,9 @@ struct Surface::Impl {
     explicit Impl(const tissue::Model& model);
     void rebuild();
     void mark(const Int3& low, const Int3& high, std::uint8_t what);
-    void redo_marked();
+    void redo_marked(std::size_t turns);
+    void redo_edges(std::int64_t block);
+    void redo_triangles(std::int64_t block);
     void fit_ranges(std::int64_t block);
     void redo_vertices(std::int64_t block);
     void write_vertices(std::int64_t block, const ChangedPoints* changed, const OldBlock* before);
@@ -87,14 +91,16 @@ Surface::Impl::Impl(const tissue::Model& model) : grid(model.hexels), spacing_m(
     triangle_range.resize(blocks);
     redo.assign(blocks, 0);
     redo_blocks.reserve(blocks);
+    write_blocks.reserve(blocks);
     removed.reserve(static_cast<std::size_t>(std::min<std::int64_t>(model.hexel_initial.count(), 16384)));
     first_vertex.resize(blocks);
 }
 
 void Surface::Impl::rebuild() {
     const std::int64_t blocks = grid.count();
-    for (const std::int32_t block : redo_blocks) redo[static_cast<std::size_t>(block)] = 0;
+    std::fill(redo.begin(), redo.end(), std::uint8_t{0});
     redo_blocks.clear();
+    write_blocks.clear();
     removed.clear();
     parallel_for("surface.edges", 0, blocks, 16, [&](std::int64_t low, std::int64_t high) {
         for (std::int64_t block = low; block < high; ++block) grid.find_edges(block);
@@ -137,32 +143,51 @@ void Surface::Impl::mark(const Int3& low, const Int3& high, std::uint8_t what) {
             for (int x = first.x; x <= last.x; ++x) {
                 const std::int64_t block = grid.block_at({x, y, z});
                 std::uint8_t& marks = redo[static_cast<std::size_t>(block)];
-                if (marks == 0) redo_blocks.push_back(static_cast<std::int32_t>(block));
+                if ((marks & (kVertices | kTriangles)) == 0) redo_blocks.push_back(static_cast<std::int32_t>(block));
                 marks |= what;
             }
 }
 
-/// One thread: some ten blocks of a few microseconds each, and tasks would be allocated.
-void Surface::Impl::redo_marked() {
-    if (redo_blocks.empty()) return;
-    for (const std::int32_t block : redo_blocks)
-        if (redo[static_cast<std::size_t>(block)] & kVertices) redo_vertices(block);
-    for (const std::int32_t block : redo_blocks) {
-        const auto b = static_cast<std::size_t>(block);
-        if ((redo[b] & kTriangles) && !(redo[b] & kVertices)) {
-            grid.find_edges(block);
-            fit_ranges(block);
-        }
+/// One thread: some ten blocks of a few microseconds each, and tasks would be allocated. A block's triangles refer to
+/// places of vertices in the blocks about it, so they come when all edges are known. What is removed in between marks
+/// its blocks anew.
+void Surface::Impl::redo_marked(std::size_t turns) {
+    constexpr std::size_t kEdgesCost = 2;  // in blocks of triangles
+    std::size_t left = ((kEdgesCost + 1) * redo_blocks.size() + write_blocks.size() + turns - 1) / turns;
+    for (; left > 0 && !redo_blocks.empty(); left -= std::min(left, kEdgesCost)) {
+        const std::int32_t block = redo_blocks.back();
+        redo_blocks.pop_back();
+        redo_edges(block);
+        if (redo_blocks.empty()) removed.clear();
     }
+    if (!redo_blocks.empty()) return;
+    for (; left > 0 && !write_blocks.empty(); --left) {
+        redo_triangles(write_blocks.back());
+        write_blocks.pop_back();
+    }
+}
+
+void Surface::Impl::redo_edges(std::int64_t block) {
+    std::uint8_t& marks = redo[static_cast<std::size_t>(block)];
+    if (marks & kVertices) {
+        redo_vertices(block);
+    } else {
+        grid.find_edges(block);
+        fit_ranges(block);
+    }
+    if ((marks & (kTriangles | kWrite)) == kTriangles) {
+        write_blocks.push_back(static_cast<std::int32_t>(block));
+        marks |= kWrite;
+    }
+    marks &= kWrite;
+}
+
+void Surface::Impl::redo_triangles(std::int64_t block) {
+    const auto b = static_cast<std::size_t>(block);
+    redo[b] = 0;
+    if (grid.edges(block).triangles == 0) return;
     grow(corner, 3 * std::size_t{triangle_pool.end()});
-    for (const std::int32_t block : redo_blocks) {
-        const auto b = static_cast<std::size_t>(block);
-        if ((redo[b] & kTriangles) && grid.edges(block).triangles > 0)
-            grid.write_triangles(block, &corner[3 * std::size_t{triangle_range[b].offset}]);
-        redo[b] = 0;
-    }
-    redo_blocks.clear();
-    removed.clear();
+    grid.write_triangles(block, &corner[3 * std::size_t{triangle_range[b].offset}]);
 }
 
 /// Only vertices with a changed end are worked out anew; the others stay, or move up where edges came or went.
@@ -266,7 +291,7 @@ void Surface::Impl::gather() {
 }
 
 void Surface::Impl::gather_into(Mesh& mesh, std::vector<std::int64_t>& mesh_owner) {
-    redo_marked();
+    redo_marked(1);
     std::uint32_t vertices = 0, triangles = 0;
     for (std::int64_t block = 0; block < grid.count(); ++block) {
         first_vertex[static_cast<std::size_t>(block)] = vertices;
@@ -328,8 +353,8 @@ void Surface::remove(const tissue::Exchange& exchange) {
     }
 }
 
-void Surface::redo_dirty_blocks() {
-    impl_->redo_marked();
+void Surface::redo_dirty_blocks(int turns) {
+    impl_->redo_marked(static_cast<std::size_t>(turns));
 }
 
 void Surface::adopt(Mesh mesh, std::vector<std::int64_t> owner) {

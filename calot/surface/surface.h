@@ -26,8 +26,9 @@ class Surface {
     /// Takes Exchange::removed_hexels away. The blocks near them are redone by redo_dirty_blocks(), or when the mesh is
     /// asked for.
     void remove(const tissue::Exchange& exchange);
-    /// Redoes the blocks near what was removed. No allocation beyond the reserve made at set-up.
-    void redo_dirty_blocks();
+    /// Redoes the blocks near what was removed, or as much of that as leaves equal parts for further calls: `turns` of
+    /// them do it all, this one included. No allocation beyond the reserve made at set-up.
+    void redo_dirty_blocks(int turns = 1);
 
     /// Takes over a mesh of State::hexel_present that somebody else made, with its owners. What comes next may be another
     /// such mesh or rebuild(), not remove().

@@ -1,6 +1,7 @@
 #pragma once
-// Which blocks of cells a heat step runs over, as bits.
+// Which blocks of cells, and which groups in them, a heat step runs over, as bits.
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -11,7 +12,7 @@
 
 namespace calot::thermal {
 
-/// Cells of a block, the unit of work and of rest: a few rows.
+/// Cells of a block, the unit of turns: a few rows. Within it, groups work or rest.
 inline constexpr std::int64_t kBlockCells = 256;
 inline constexpr unsigned kBlockGroups = kBlockCells / kGroupCells;
 
@@ -22,15 +23,25 @@ struct Cells {
 Cells cells_of(const Lattice& lattice, std::int64_t block);
 std::int64_t block_count(const Lattice& lattice);
 
-/// A set of blocks.
+/// A set of blocks, or of groups of kGroupCells cells, counted from the lattice's first cell as well.
 class BlockSet {
   public:
     explicit BlockSet(std::int64_t blocks = 0) : words_(static_cast<std::size_t>(blocks / 64 + 1), 0) {}
     bool test(std::int64_t b) const { return (words_[static_cast<std::size_t>(b >> 6)] >> (b & 63)) & 1u; }
     void set(std::int64_t b) { words_[static_cast<std::size_t>(b >> 6)] |= std::uint64_t{1} << (b & 63); }
+    void clear() { std::fill(words_.begin(), words_.end(), std::uint64_t{0}); }
     void clear(std::int64_t b) { words_[static_cast<std::size_t>(b >> 6)] &= ~(std::uint64_t{1} << (b & 63)); }
     /// All of [first, last].
     void set_range(std::int64_t first, std::int64_t last);
+    /// Of a set of groups, those of a block: bits, lowest first.
+    std::uint16_t groups_of(std::int64_t block) const {
+        return static_cast<std::uint16_t>(words_[static_cast<std::size_t>(block >> 2)] >> (16 * (block & 3)));
+    }
+    void set_groups(std::int64_t block, std::uint16_t groups) {
+        std::uint64_t& word = words_[static_cast<std::size_t>(block >> 2)];
+        const auto shift = 16 * (block & 3);
+        word = (word & ~(std::uint64_t{0xffff} << shift)) | std::uint64_t{groups} << shift;
+    }
     /// Adds the blocks of `other`, `shift` further on.
     void add_shifted(const BlockSet& other, std::int64_t shift);
     void keep(const BlockSet& other);
@@ -42,13 +53,18 @@ class BlockSet {
     std::vector<std::uint64_t> words_;
 };
 
-/// Blocks that ever held tissue.
-BlockSet populated_blocks(const tissue::Model& model);
+static_assert(kBlockGroups == 16, "a block's groups are sixteen bits of their set");
 
-/// `warm` and all blocks that hold a face neighbour of one of its cells, into `out`.
-void dilate(const Lattice& lattice, const BlockSet& warm, BlockSet& out);
+/// Blocks, or groups, of `cells` cells that ever held tissue.
+BlockSet populated(const tissue::Model& model, std::int64_t cells);
 
-/// Adds the blocks that Joule heat reaches.
-void add_heated(const Lattice& lattice, const tissue::JouleHeat& joule, BlockSet& out);
+/// The blocks that hold any of these groups, into `out`.
+void find_blocks(const BlockSet& groups, BlockSet& out);
+
+/// `warm` and all blocks, or groups, of `cells` cells that hold a face neighbour of one of its cells, into `out`.
+void dilate(const Lattice& lattice, const BlockSet& warm, std::int64_t cells, BlockSet& out);
+
+/// Adds the groups that Joule heat reaches.
+void add_heated(const Lattice& lattice, const tissue::JouleHeat& joule, BlockSet& groups);
 
 }  // namespace calot::thermal

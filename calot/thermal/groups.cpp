@@ -49,6 +49,7 @@ Groups Groups::make(const tissue::Model& model, const BitArray& present) {
     Groups all;
     const std::int64_t count = lattice.cells / kGroupCells + 17;  // a block of 16 groups may begin with the last cells
     all.groups.assign(static_cast<std::size_t>(count), {});
+    all.cost.assign(static_cast<std::size_t>(count), 0);
     all.faces.assign(static_cast<std::size_t>(lattice.cells), 0);
     all.share.assign(static_cast<std::size_t>(lattice.cells), 0);
     all.dirty = BitArray(count);
@@ -75,6 +76,7 @@ void Groups::look_at(const tissue::Model& model, const BitArray& present, std::i
         exposed |= absent;
     }
     own.kind = static_cast<std::uint8_t>(exposed != 0 ? own.kind | kExposed : own.kind & ~kExposed);
+    weigh(group);
     for (int k = 0; k < kGroupCells; ++k) {
         const auto cell = static_cast<std::size_t>(first + k);
         faces[cell] = 0;

@@ -2,6 +2,7 @@
 // Cells in groups of sixteen, the widest vector: which of them hold tissue, what lies beside them, and hence what a heat
 // step has to do with them. Presence changes seldom, so all of it is kept and renewed where hexels went.
 
+#include <array>
 #include <cstdint>
 
 #include "calot/base/array.h"
@@ -26,6 +27,9 @@ enum GroupKind : std::uint8_t {
 // with a spread of as much; those of balls of 6 to 40 hexels across within 3 %. (Weights of 1, 0.35 and 0.2 are 2.0 %
 // off on planes.) Price: real edges count as rounded; a cube of 20 hexels a side exchanges 6 % too little.
 
+/// What a group costs, by its kind, in vectors of healthy tissue.
+inline constexpr std::array<std::uint8_t, 8> kCost{1, 1, 3, 3, 5, 5, 5, 5};
+
 /// A bit for each of its cells, lowest first.
 struct alignas(16) CellGroup {
     std::uint16_t present = 0;
@@ -38,6 +42,7 @@ static_assert(sizeof(CellGroup) == 16);
 /// Groups of a lattice and the faces of its hexels.
 struct Groups {
     Array<CellGroup> groups;    ///< [hexels.cells / 16 + 17]
+    Array<std::uint8_t> cost;   ///< [as many] kCost of those that hold hexels, else 0
     Array<std::uint8_t> faces;  ///< [hexels.cells] number towards gas, and towards held tissue times kHeldFace
     Array<std::uint8_t> share;  ///< [hexels.cells] of exposed hexels, what each face counts, in 1 / kWholeFace
     BitArray dirty;             ///< [groups] to be looked at anew; empty between calls
@@ -48,6 +53,11 @@ struct Groups {
     void touch(const Lattice& lattice, std::int64_t hexel);
     /// Looks anew at what was touched.
     void refresh(const tissue::Model& model, const BitArray& present);
+    /// After its kind changed.
+    void weigh(std::int64_t group) {
+        const CellGroup& own = groups[static_cast<std::size_t>(group)];
+        cost[static_cast<std::size_t>(group)] = own.present != 0 ? kCost[own.kind] : std::uint8_t{0};
+    }
 
   private:
     void look_at(const tissue::Model& model, const BitArray& present, std::int64_t group);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "calot/base/parallel.h"
 #include "calot/thermal/axes.h"
@@ -19,9 +20,6 @@ constexpr std::int64_t kChunkBlocks = 4 * kRunBlocks;
 /// Of hexels that are gas, this part goes in a tick, rounded up: few at a time, so that what follows is not too much for
 /// one tick, and soon, so that the metal is not kept waiting.
 constexpr std::size_t kSpentTicks = 4;
-/// Of a vector that has boiled or been damaged, and of one where tissues meet, in vectors of healthy tissue.
-constexpr unsigned kChangedCost = 3, kMixedCost = 5;
-
 JouleRows joule_rows(const Lattice& lattice, const tissue::JouleHeat& joule, double dt_s) {
     JouleRows rows{};
     if (joule.size == Int3(0)) return rows;
@@ -49,6 +47,7 @@ HeatStep make_step(const tissue::Model& model, tissue::State& state, const tissu
     step.faces = work.groups.faces.data();
     step.share = work.groups.share.data();
     step.living = state.hexel_present.bytes();
+    step.active = &work.active_groups;
     step.first = model.hexels.first;
     step.last = model.hexels.last;
     for (int axis = 0; axis < 3; ++axis) step.offset[axis] = model.hexels.stride[axis];
@@ -79,44 +78,56 @@ void for_words(const Lattice& lattice, const BlockSet& blocks, const Body& body)
         }
 }
 
-unsigned cost_of(const tissue::Model& model, const Work& work, std::int64_t block) {
-    const CellGroup* groups = work.groups.groups.data() + cells_of(model.hexels, block).begin / kGroupCells;
-    unsigned cost = 0;
-    for (unsigned g = 0; g < kBlockGroups; ++g)
-        if (groups[g].present != 0)
-            cost += (groups[g].kind & kMixed) != 0 ? kMixedCost : (groups[g].kind & kChanged) != 0 ? kChangedCost : 1u;
-    return cost;
+/// Bytes of ones for the bits of a byte.
+constexpr std::array<std::uint64_t, 256> kByteMasks = [] {
+    std::array<std::uint64_t, 256> masks{};
+    for (std::uint64_t bits = 0; bits < 256; ++bits)
+        for (unsigned k = 0; k < 8; ++k)
+            if (bits >> k & 1) masks[bits] |= std::uint64_t{0xff} << (8 * k);
+    return masks;
+}();
+
+/// What some groups of a block cost.
+unsigned cost_of(const tissue::Model& model, const Work& work, std::int64_t block, std::uint16_t some) {
+    const std::uint8_t* cost = work.groups.cost.data() + cells_of(model.hexels, block).begin / kGroupCells;
+    std::uint64_t low, high;
+    std::memcpy(&low, cost, sizeof(low));
+    std::memcpy(&high, cost + 8, sizeof(high));
+    const std::uint64_t both = (low & kByteMasks[some & 0xff]) + (high & kByteMasks[some >> 8]);  // no byte runs over
+    return static_cast<unsigned>(both * 0x0101010101010101u >> 56);
 }
 
 /// Notes which hexels went during the last step.
 void look_at_presence(const tissue::Model& model, const tissue::State& state, Work& work) {
-    Array<std::uint64_t>& before = work.present.words();
-    const Array<std::uint64_t>& now = state.hexel_present.words();
-    for (std::size_t w = 0; w < now.size(); ++w) {
-        std::uint64_t gone = before[w] & ~now[w];
-        if (gone == 0) continue;
-        before[w] = now[w];
-        for (; gone != 0; gone &= gone - 1)
-            work.groups.touch(model.hexels, static_cast<std::int64_t>(64 * w) + __builtin_ctzll(gone));
+    const auto note = [&](std::int64_t hexel) {
+        work.present.clear(hexel);
+        work.groups.touch(model.hexels, hexel);
+    };
+    for (const std::int32_t hexel : work.burnt) note(hexel);
+    if (state.hexels_fallen != work.fallen) {
+        const Array<std::uint64_t>&before = work.present.words(), &now = state.hexel_present.words();
+        for (std::size_t w = 0; w < now.size(); ++w)
+            for (std::uint64_t gone = before[w] & ~now[w]; gone != 0; gone &= gone - 1)
+                note(static_cast<std::int64_t>(64 * w) + __builtin_ctzll(gone));
     }
     work.groups.refresh(model, state.hexel_present);
 }
 
 /// How much of a step is done before each tick, of 48: less in those that are long for the electric field, for what the
 /// step begins with, or for the surface.
-constexpr std::array<std::uint64_t, 9> kDoneBefore{0, 4, 11, 19, 26, 32, 37, 42, 48};
+constexpr std::array<std::uint64_t, 9> kDoneBefore{0, 4, 11, 22, 29, 34, 38, 42, 48};
 
-/// Shares the active blocks out to the ticks of the step. Only those of `counted` count as work.
-void plan_turns(Work& work, const BlockSet& counted) {
+/// Shares the active blocks out to the ticks of the step. Only the groups of `counted` count as work.
+void plan_turns(const tissue::Model& model, Work& work, const BlockSet& counted) {
     work.turns.clear();
-    const auto cost = [&](std::int32_t block) -> std::uint64_t {
-        return counted.test(block) ? work.cost[static_cast<std::size_t>(block)] : 0;
-    };
+    work.costs.clear();
     std::uint64_t all = 0;
     for (std::size_t k = 0; k < work.active.words(); ++k)
         for (std::uint64_t bits = work.active.word(k); bits != 0; bits &= bits - 1) {
-            work.turns.push_back(static_cast<std::int32_t>(64 * k) + __builtin_ctzll(bits));
-            all += cost(work.turns.back());
+            const std::int32_t block = static_cast<std::int32_t>(64 * k) + __builtin_ctzll(bits);
+            work.turns.push_back(block);
+            work.costs.push_back(static_cast<std::uint8_t>(cost_of(model, work, block, counted.groups_of(block))));
+            all += work.costs.back();
         }
     const std::size_t slices = work.slices.size() - 1;
     const bool framed = slices + 1 == kDoneBefore.size();
@@ -126,35 +137,56 @@ void plan_turns(Work& work, const BlockSet& counted) {
     std::size_t slice = 0;
     for (std::size_t k = 0; k < work.turns.size(); ++k) {
         for (; slice < slices && sum * parts >= before(slice) * all; ++slice) work.slices[slice] = k;
-        sum += cost(work.turns[k]);
+        sum += work.costs[k];
     }
     for (; slice <= slices; ++slice) work.slices[slice] = work.turns.size();
 }
 
-/// Blocks that rest for the first time: both arrays are at body temperature from now on.
+/// Groups that rest for the first time: both arrays are at body temperature from now on.
 void put_to_rest(const Lattice& lattice, Work& work) {
     for (std::size_t k = 0; k < work.heated.words(); ++k)
-        for (std::uint64_t bits = work.heated.word(k) & ~work.active.word(k); bits != 0; bits &= bits - 1) {
-            const Cells cells = cells_of(lattice, static_cast<std::int64_t>(64 * k) + __builtin_ctzll(bits));
-            std::copy(work.temperature_K.begin() + cells.begin, work.temperature_K.begin() + cells.end,
-                      work.next_temperature_K.begin() + cells.begin);
+        for (std::uint64_t bits = work.heated.word(k) & ~work.active_groups.word(k); bits != 0; bits &= bits - 1) {
+            const auto group = static_cast<std::int64_t>(64 * k) + __builtin_ctzll(bits);
+            const std::int64_t begin = lattice.first + group * kGroupCells;
+            std::copy_n(work.temperature_K.begin() + begin, std::min<std::int64_t>(kGroupCells, lattice.last - begin),
+                        work.next_temperature_K.begin() + begin);
         }
+}
+
+/// Adds the groups that Joule heat reaches to `groups`.
+void add_heated(const tissue::Model& model, const tissue::JouleHeat& joule, Work& work, BlockSet& groups) {
+    work.joule_low = joule.low;
+    work.joule_size = joule.size;
+    add_heated(model.hexels, joule, groups);
+}
+
+/// Current that came, or whose window moved, since the step began: it heats what takes part in the step.
+void add_late_heat(const tissue::Model& model, const tissue::JouleHeat& joule, Work& work) {
+    if (joule.size == Int3(0) || (joule.low == work.joule_low && joule.size == work.joule_size)) return;
+    work.late.clear();
+    add_heated(model, joule, work, work.late);
+    work.late.keep(work.populated_groups);
+    for (const std::int32_t block : work.turns)
+        work.active_groups.set_groups(
+            block, static_cast<std::uint16_t>(work.active_groups.groups_of(block) | work.late.groups_of(block)));
 }
 
 void begin_step(const tissue::Model& model, tissue::State& state, const tissue::Exchange& exchange, Work& work,
                 double dt_s) {
     look_at_presence(model, state, work);
-    std::swap(work.heated, work.active);
-    dilate(model.hexels, work.warm, work.active);
-    add_heated(model.hexels, exchange.joule, work.active);
-    work.active.keep(work.populated);
+    std::swap(work.heated, work.active_groups);
+    dilate(model.hexels, work.warm, kGroupCells, work.active_groups);
+    add_heated(model, exchange.joule, work, work.active_groups);
+    work.active_groups.keep(work.populated_groups);
     exchange_with_tip(model, state, exchange, work, dt_s);
     if (work.dense) {
-        const BlockSet counted = work.active;
-        work.active = work.populated;
-        plan_turns(work, counted);
+        const BlockSet counted = work.active_groups;
+        work.active_groups = work.populated_groups;
+        find_blocks(work.active_groups, work.active);
+        plan_turns(model, work, counted);
     } else {
-        plan_turns(work, work.active);
+        find_blocks(work.active_groups, work.active);
+        plan_turns(model, work, work.active_groups);
     }
     put_to_rest(model.hexels, work);
     work.burnt.clear();
@@ -195,6 +227,12 @@ void find_spent(const tissue::Model& model, const tissue::State& state, Work& wo
     }
 }
 
+/// After kinds of its groups changed.
+void weigh(const tissue::Model& model, Work& work, std::int64_t block) {
+    const std::int64_t first = cells_of(model.hexels, block).begin / kGroupCells;
+    for (std::int64_t group = first; group < first + kBlockGroups; ++group) work.groups.weigh(group);
+}
+
 /// Books what the blocks [begin, end) of Work::turns did, in their order.
 void book(const tissue::Model& model, tissue::State& state, tissue::Exchange& exchange, Work& work, std::size_t begin,
           std::size_t end) {
@@ -202,9 +240,8 @@ void book(const tissue::Model& model, tissue::State& state, tissue::Exchange& ex
     for (std::size_t k = begin; k < end; ++k) {
         const BlockMarks& marks = work.marks[k];
         const std::int64_t block = work.turns[k];
-        marks.warm ? work.warm.set(block) : work.warm.clear(block);
-        if (marks.changed)
-            work.cost[static_cast<std::size_t>(block)] = static_cast<std::uint8_t>(cost_of(model, work, block));
+        work.warm.set_groups(block, marks.warm);
+        if (marks.changed) weigh(model, work, block);
         if (marks.spent) find_spent(model, state, work, block);
         if (marks.boiled) emit_steam(model, state, exchange, work, block);
     }
@@ -281,7 +318,6 @@ void look_at_block(const tissue::Model& model, const tissue::State& state, Work&
     const auto body_K = static_cast<float>(model.thermal.body_temperature_K);
     const bool threshold = model.thermal.phase_model == tissue::PhaseModel::threshold;
     const Cells cells = cells_of(model.hexels, block);
-    bool warm = false;
     for (std::int64_t i = cells.begin; i < cells.end; ++i) {
         const auto h = static_cast<std::size_t>(i);
         CellGroup& group = work.groups.groups[h / kGroupCells];
@@ -290,11 +326,10 @@ void look_at_block(const tissue::Model& model, const tissue::State& state, Work&
         if (!state.hexel_present.test(i)) continue;
         if (state.water_kg_per_m3[h] != work.properties.water_kg_per_m3[model.hexel_material[h]]) group.kind |= kChanged;
         work.temperature_K[h] = temperature_K(model, state, i);
-        warm |= work.temperature_K[h] != body_K;
+        if (work.temperature_K[h] != body_K) work.warm.set((i - model.hexels.first) / kGroupCells);
         if (is_spent(model, state, work.properties, i)) work.spent.push_back(static_cast<std::int32_t>(i));
     }
-    if (warm) work.warm.set(block);
-    work.cost[static_cast<std::size_t>(block)] = static_cast<std::uint8_t>(cost_of(model, work, block));
+    weigh(model, work, block);
 }
 
 }  // namespace
@@ -309,9 +344,11 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     work.temperature_K.assign(cells, static_cast<float>(model.thermal.body_temperature_K));
     work.steam_kg_per_m3.assign(cells, 0.0f);
     work.present = state.hexel_present;
-    work.populated = populated_blocks(model);
-    for (BlockSet* set : {&work.active, &work.warm, &work.heated}) *set = BlockSet(blocks);
-    work.cost.assign(static_cast<std::size_t>(blocks), 0);
+    work.populated = populated(model, kBlockCells);
+    work.populated_groups = populated(model, kGroupCells);
+    work.active = BlockSet(blocks);
+    for (BlockSet* set : {&work.warm, &work.active_groups, &work.heated, &work.late})
+        *set = BlockSet(blocks * kBlockGroups);
     work.spent.reserve(static_cast<std::size_t>(model.hexel_initial.count()));
     work.burnt.reserve(work.spent.capacity());
     work.sticks.reserve(work.spent.capacity());
@@ -324,6 +361,7 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     work.properties.set_step(model, step_s / work.substeps);
     work.slices.assign(static_cast<std::size_t>(work.substeps == 1 ? model.thermal.refresh_ticks : 1) + 1, 0);
     work.turns.reserve(static_cast<std::size_t>(blocks));
+    work.costs.reserve(static_cast<std::size_t>(blocks));
     work.marks.resize(static_cast<std::size_t>(blocks));
     work.sums.reserve(static_cast<std::size_t>(blocks / kChunkBlocks + 1));
     return work;
@@ -340,7 +378,10 @@ void conduct(const tissue::Model& model, tissue::State& state, tissue::Exchange&
     const int slices = static_cast<int>(work.slices.size()) - 1;
     for (int substep = 0; substep < work.substeps; ++substep) {
         if (tick >= slices) return;
-        if (tick == 0) begin_step(model, state, exchange, work, dt_s);
+        if (tick == 0)
+            begin_step(model, state, exchange, work, dt_s);
+        else
+            add_late_heat(model, exchange.joule, work);
         run_slice(model, state, exchange, work, dt_s, static_cast<std::size_t>(tick));
         if (tick == slices - 1) finish_step(model, state, work);
     }

@@ -15,10 +15,11 @@
 // with them at the end of the step. Between ticks, EnergyBudget::transit holds what blocks that had their turn owe to
 // those that had not: the budget closes at every tick.
 //
-// A block is warm when any of its hexels has a temperature other than body temperature (tissue::kRest_K and more away
-// from it); its neighbours are active too, and those that Joule heat reaches. Everything that exchanges heat is zero at
-// body temperature, so that skipping the other blocks changes no byte: heat cannot be lost at the cold front. Which
-// blocks are active, and hence when each has its turn, is a function of State alone.
+// A group of 16 cells is warm when any of its hexels has a temperature other than body temperature (tissue::kRest_K and
+// more away from it); its neighbours are active too, and those that Joule heat reaches. Everything that exchanges heat is
+// zero at body temperature, so that skipping the other groups changes no byte: heat cannot be lost at the cold front.
+// Blocks with active groups take turns. Which groups are active, and hence when each block has its turn, is a function of
+// State alone.
 
 #include <cstdint>
 #include <vector>
@@ -45,7 +46,7 @@ struct HeatSums {
 
 /// What a heat step found in a block.
 struct BlockMarks {
-    bool warm = false;     ///< hexels that are not at body temperature now
+    std::uint16_t warm = 0;  ///< its groups with hexels that are not at body temperature now
     bool changed = false;  ///< some that boiled or took damage
     bool boiled = false;   ///< Work::steam_kg_per_m3 has entries
     bool spent = false;    ///< some that are gas
@@ -54,7 +55,7 @@ struct BlockMarks {
 /// Scratch. What lies in it at the end of a heat step is a function of State.
 struct Work {
     Array<float> temperature_K;  ///< [hexels.cells] of every present hexel at the end of the last complete heat step
-    BlockSet active;             ///< blocks that take part in this step
+    BlockSet active;             ///< blocks that take part in this step, in active_groups
     bool dense = false;          ///< every block takes part: for comparison only
     bool scalar = false;         ///< take the scalar reference kernels: for comparison only
 
@@ -64,9 +65,13 @@ struct Work {
     Array<float> next_temperature_K;   ///< [hexels.cells] of the step under way; of resting blocks as the other
     Array<float> steam_kg_per_m3;      ///< [hexels.cells] boiled off in this tick; zero between ticks
     BitArray present;                  ///< hexels when the step began
-    BlockSet populated, warm, heated;  ///< blocks that hold tissue, are warm, were active in the step before
-    std::vector<std::uint8_t> cost;    ///< [blocks] of a step, in vectors of cells
+    BlockSet populated;                ///< blocks that ever held tissue
+    BlockSet populated_groups, warm, active_groups, heated;  ///< groups that ever did, that are warm, active, were active
+                                                             ///< in the step before
+    BlockSet late;                     ///< groups that Joule heat reaches since the step began
+    Int3 joule_low{0}, joule_size{0};  ///< where it was looked for last
     std::vector<std::int32_t> turns;   ///< the active blocks of this step, ascending
+    std::vector<std::uint8_t> costs;   ///< of each, in vectors of cells
     std::vector<std::size_t> slices;   ///< where each tick's part of them begins, and the end
     std::vector<BlockMarks> marks;     ///< of each
     std::vector<HeatSums> sums;        ///< of each chunk of a tick's part

@@ -25,6 +25,7 @@ struct HeatStep {
     const Properties* properties;  ///< set to the step
     const tissue::MaterialIndex* material;
     const std::uint8_t* living;  ///< bits: hexels present now; groups hold those present when the step began
+    const BlockSet* active;      ///< groups
     const std::uint8_t* faces;   ///< Groups::faces
     const std::uint8_t* share;   ///< Groups::share
     std::int64_t first, last;    ///< of the lattice; block 0 begins at its first cell
@@ -50,7 +51,7 @@ struct HeatStep {
 /// stay near.
 inline constexpr int kRunBlocks = 64;
 
-/// Adds q dt to the hexels that are present now of at most kRunBlocks blocks, then
+/// Adds q dt to the hexels that are present now of at most kRunBlocks blocks, then in their active groups
 ///
 ///     H' = H + dt [ (1/s_h^2) sum_alive k_ij (T_j - T_i) + w_b(Omega) rho_b c_b (T_a - T_i)
 ///                   - (1/s_h) sum_exposed h_c (T_i - T_s) ]                       (docs/physics.md section 6)

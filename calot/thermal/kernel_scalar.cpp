@@ -99,7 +99,8 @@ void settle(const HeatStep& step, std::int64_t i, float& enthalpy, BlockMarks& m
     const float rise = std::min(enthalpy * (1.0f / capacity), wet ? p.wet_limit_K : p.dry_limit_K[m]);
     const float now_K = step.body_K + (std::abs(rise) < tissue::kRest_K ? 0.0f : rise);
     step.next_temperature_K[i] = now_K;
-    marks.warm |= now_K != step.body_K;
+    const std::int64_t group = i / kGroupCells - step.first / kGroupCells;
+    if (now_K != step.body_K) marks.warm = static_cast<std::uint16_t>(marks.warm | 1u << (group % kBlockGroups));
     if (!wet && enthalpy >= p.spent_J_per_m3[m]) marks.spent = true;
     if (now_K <= kDamageThreshold_K) return;
     marks.changed = true;
@@ -131,7 +132,9 @@ void step_blocks_scalar(const HeatStep& step, const std::int32_t* blocks, int co
         marks[k] = {};
         const std::int64_t begin = step.first + blocks[k] * kBlockCells, end = std::min(begin + kBlockCells, step.last);
         if (step.joule.density != nullptr) deposit(step, begin, end, sums);
+        const std::uint16_t active = step.active->groups_of(blocks[k]);
         for (std::int64_t i = begin; i < end; ++i) {
+            if ((active >> ((i - begin) / kGroupCells) & 1) == 0) continue;
             if ((step.groups[i / kGroupCells].present >> (i % kGroupCells) & 1) == 0) continue;
             float enthalpy = conduct(step, i, sums);
             if (bit(step.living, i)) settle(step, i, enthalpy, marks[k], sums);

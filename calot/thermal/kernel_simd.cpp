@@ -227,6 +227,11 @@ HWY_INLINE F exchange(const HeatStep& step, const PropertyLookup<mixed>& of, std
     return hn::Sub(held, gas);
 }
 
+/// Notes whether a group of a block is warm; once is enough.
+HWY_INLINE void mark_warm(BlockMarks& marks, unsigned group, bool warm) {
+    marks.warm = static_cast<std::uint16_t>(marks.warm | static_cast<unsigned>(warm) << group);
+}
+
 /// One vector of cells that are hot, dry or may boil: the lanes `living` from cell i on, `part` of their group.
 struct CellVector {
     std::int64_t i;
@@ -277,10 +282,10 @@ HWY_INLINE void hurt(const HeatStep& step, const PropertyLookup<mixed>& of, std:
     hn::Store(hn::IfThenElse(hurts, more, damage), d, step.damage + i);
 }
 
-/// Phases, temperature, peak and damage of what is hot, dry or may boil. True when any lane lost water or took damage.
+/// Phases, temperature, peak and damage of what is hot, dry or may boil, in a group of its block. True when any lane lost water or took damage.
 template <bool mixed>
-HWY_INLINE bool settle(const HeatStep& step, const PropertyLookup<mixed>& of, const CellVector& at, BlockMarks& marks,
-                       RunSums& sums, HeatSums& shared) {
+HWY_INLINE bool settle(const HeatStep& step, const PropertyLookup<mixed>& of, const CellVector& at, unsigned group,
+                       BlockMarks& marks, RunSums& sums, HeatSums& shared) {
     const D d;
     const Properties& p = *step.properties;
     const F zero = hn::Zero(d), dry_capacity = of(p.dry_capacity_J_per_m3K);
@@ -309,7 +314,7 @@ HWY_INLINE bool settle(const HeatStep& step, const PropertyLookup<mixed>& of, co
     const F rise = hn::Min(hn::Mul(enthalpy, hn::Div(number(1.0f), capacity)), limit);
     const F now_K = temperature_of(step, rise);
     hn::Store(now_K, d, step.next_temperature_K + at.i);
-    marks.warm |= !hn::AllFalse(d, hn::AndNot(at_rest(rise), at.living));
+    mark_warm(marks, group, !hn::AllFalse(d, hn::AndNot(at_rest(rise), at.living)));
     marks.spent |= !hn::AllFalse(d, hn::And(dry, hn::Ge(enthalpy, of(p.spent_J_per_m3))));
     const Mask hurts = hn::And(hn::Gt(now_K, number(kDamageThreshold_K)), at.living);
     if (hn::AllFalse(d, hurts)) return changed;
@@ -350,9 +355,10 @@ HWY_NOINLINE void settle_groups(const HeatStep& step, Run& run, const GroupList&
             const std::int64_t i = first + part * kLanes;
             const CellVector at{i, part, mask_at(step.living, i)};
             if (hn::AllFalse(D(), at.living)) continue;
+            const unsigned own = place % kBlockGroups;
             changed |= (group.kind & kMixed) != 0
-                         ? settle(step, PropertyLookup<true>(step, group, i), at, marks, run.sums, shared)
-                         : settle(step, PropertyLookup<false>(step, group, i), at, marks, run.sums, shared);
+                         ? settle(step, PropertyLookup<true>(step, group, i), at, own, marks, run.sums, shared)
+                         : settle(step, PropertyLookup<false>(step, group, i), at, own, marks, run.sums, shared);
         }
         if (!changed) continue;
         marks.changed = true;
@@ -404,11 +410,24 @@ HWY_INLINE Outcome step_vector(const HeatStep& step, const CellGroup& group, std
 }
 
 /// Calls for what a group will want from memory, so that it is there in time.
+template <bool exposed, bool changed, bool mixed>
 HWY_INLINE void call_for(const HeatStep& step, std::int64_t cell) {
     hwy::Prefetch(step.temperature_K + cell);
-    hwy::Prefetch(step.temperature_K + cell + step.furthest);
+    for (const std::int64_t side : {-step.furthest, step.furthest}) {  // across two lines
+        hwy::Prefetch(step.temperature_K + cell + side);
+        hwy::Prefetch(step.temperature_K + cell + side + kGroupCells - 1);
+    }
     hwy::Prefetch(step.enthalpy_J_per_m3 + cell);
     hwy::Prefetch(step.next_temperature_K + cell);
+    if constexpr (exposed) {
+        hwy::Prefetch(step.faces + cell);
+        hwy::Prefetch(step.share + cell);
+    }
+    if constexpr (changed) {
+        hwy::Prefetch(step.water_kg_per_m3 + cell);
+        hwy::Prefetch(step.damage + cell);
+    }
+    if constexpr (mixed) hwy::Prefetch(step.material + cell);
 }
 
 /// Groups of one kind.
@@ -422,7 +441,7 @@ HWY_NOINLINE void step_groups(const HeatStep& shared, Run& run, const GroupList&
         ConductSums sums;
         for (int n = from; n < to; ++n) {
             const unsigned place = list.places[n];
-            if (n + kAhead < list.count) call_for(step, run.cell(step, list.places[n + kAhead]));
+            if (n + kAhead < list.count) call_for<exposed, changed, mixed>(step, run.cell(step, list.places[n + kAhead]));
             const std::int64_t first = run.cell(step, place);
             const CellGroup& group = step.groups[first / kGroupCells];
             Outcome any{false, false};
@@ -430,7 +449,7 @@ HWY_NOINLINE void step_groups(const HeatStep& shared, Run& run, const GroupList&
                 const Outcome one = step_vector<exposed, changed, mixed>(step, group, first + k, k, sums);
                 any = {any.warm || one.warm, any.hot || one.hot};
             }
-            run.marks[place / kBlockGroups].warm |= any.warm;
+            mark_warm(run.marks[place / kBlockGroups], place % kBlockGroups, any.warm);
             hot.add_if(any.hot, place);
         }
         sums.add_to(run.sums);
@@ -445,7 +464,12 @@ void step_blocks(const HeatStep& step, const std::int32_t* blocks, int count, Bl
         const std::int64_t begin = step.first + blocks[b] * kBlockCells, past = begin + kBlockCells;
         if (step.joule.density != nullptr) deposit(step, begin, past < step.last ? past : step.last, run.sums);
         const CellGroup* groups = step.groups + begin / kGroupCells;
-        for (unsigned g = 0; g < kBlockGroups; ++g) {
+        if (b + 2 < count) {
+            const CellGroup* ahead = step.groups + (step.first + blocks[b + 2] * kBlockCells) / kGroupCells;
+            for (unsigned g = 0; g < kBlockGroups; g += 64 / sizeof(CellGroup)) hwy::Prefetch(ahead + g);
+        }
+        for (std::uint32_t active = step.active->groups_of(blocks[b]); active != 0; active &= active - 1) {
+            const auto g = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(active));
             const unsigned kind = groups[g].kind < kMixed ? groups[g].kind : unsigned{kMixed};
             kinds[kind].add_if(groups[g].present != 0, static_cast<unsigned>(b) * kBlockGroups + g);
         }

@@ -99,7 +99,7 @@ void exchange_with_tip(const tissue::Model& model, tissue::State& state, const t
         const float before = enthalpy;
         enthalpy += static_cast<float>(gained);
         if (enthalpy == before) continue;
-        work.active.set((near.hexel - model.hexels.first) / kBlockCells);
+        work.active_groups.set((near.hexel - model.hexels.first) / kGroupCells);
         taken_J -= static_cast<double>(enthalpy - before) * volume;
     }
     settle_wire(model, state, contact.wire, taken_J, exchange.joule.wire_W * dt_s, dt_s);

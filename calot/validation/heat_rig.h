@@ -126,7 +126,7 @@ struct HeatRun {
                 for (int x = 0; x < size.x; ++x) {
                     const Int3 cell = low + Int3(x, y, z);
                     joule_W_per_m3[static_cast<std::size_t>(joule.index(cell))] =
-                        static_cast<float>(density_W_per_m3(cell));
+                        model.hexels.contains(cell) ? static_cast<float>(density_W_per_m3(cell)) : 0.0f;
                 }
         joule.density = {joule_W_per_m3.data(), joule_W_per_m3.size()};
     }
