@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "calot/deformation/carriers.h"
 #include "calot/deformation/embedding.h"
@@ -20,9 +22,9 @@ namespace calot::deformation {
 
 namespace {
 
-/// How far instruments and tissue may move towards each other before a frame's groups are listed anew: instruments are
-/// asked, tissue is taken to be slower than 1 m/s.
-constexpr float kInstrumentMargin_m = 4e-3f, kTissueMargin_m = 8e-3f;
+/// How far instruments and tissue may move towards each other before a frame's phyxels are listed anew: instruments are
+/// asked, tissue is taken to be slower than 0.75 m/s.
+constexpr float kInstrumentMargin_m = 2e-3f, kTissueMargin_m = 6e-3f;
 
 }  // namespace
 
@@ -36,7 +38,8 @@ Capsules::Capsules(const std::vector<tissue::Capsule>& capsules, const NearReach
                          length2 > 0.0f ? 1.0f / length2 : 0.0f,
                          static_cast<float>(c.radius_m),
                          static_cast<float>(reach.of(c)),
-                         c.bare};
+                         c.bare,
+                         c.instrument};
     }
 }
 
@@ -59,15 +62,27 @@ std::uint64_t surface_hexels(const tissue::Model& model, const Work& work, const
     return own & ~inside;
 }
 
+/// kRowOutward with a 0 behind.
+constexpr auto kPaddedOutward = [] {
+    std::array<std::array<std::array<float, 4>, 8>, 9> outward{};
+    for (std::size_t row = 0; row < 9; ++row)
+        for (std::size_t bits = 0; bits < 8; ++bits)
+            for (std::size_t axis = 0; axis < 3; ++axis) outward[row][bits][axis] = kRowOutward[row][bits][axis];
+    return outward;
+}();
+
 /// Away from the tissue at rest: against the sum of the directions to the 26 neighbours that are filled. 0 where they
 /// balance, as in a sheet one hexel thick.
 Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const NeighbourRows& rows, std::int64_t hexel) {
-    Vec3f sum(0.0f);
+    // Four numbers at a time; the fourth is not used.
+    Four sum{};
     for (std::size_t row = 0; row < rows.offset.size(); ++row) {
         const std::int64_t cell = hexel + rows.offset[row];
-        const auto& row_outward =
-            kRowOutward[row][(state.hexel_present.bits32(cell) | model.hexel_held.bits32(cell)) & 7u];
-        sum += Vec3f(row_outward[0], row_outward[1], row_outward[2]);
+        Four towards;
+        std::memcpy(&towards,
+                    kPaddedOutward[row][(state.hexel_present.bits32(cell) | model.hexel_held.bits32(cell)) & 7u].data(),
+                    sizeof(towards));
+        sum += towards;
     }
     Vec3f outward;
     for (int k = 0; k < 3; ++k) outward[rows.axis[k]] = sum[k];
@@ -134,7 +149,8 @@ struct Search {
         }
         view.place[kNeighbourhood] = kNeighbourhood;
         view.tables = &work.near;
-        view.capsules = &lanes;
+        view.capsules = &capsules;
+        view.lanes = &lanes;
         view.half_m = static_cast<float>(0.5 * model.hexels.spacing_m) * static_cast<float>(shifts.m - 1);
     }
 
@@ -193,20 +209,17 @@ float moved_since(const Capsules& listed, const Capsules& now) {
     return most;
 }
 
-/// Lists the groups that may be near in this frame, unless that was done.
-void list_groups(const tissue::State& state, const Capsules& capsules,
-                 const PlaceView& places, float further_m, Work& work) {
+/// Lists the phyxels that may be near in this frame, unless that was done.
+void list_phyxels(const tissue::State& state, const Capsules& capsules, const PlaceView& places, float further_m,
+                  Work& work) {
     NearWork& near = work.near;
     const bool same_frame =
         near.tick >= 0 && state.tick == near.tick + 1 && state.tick % tissue::Model::frame_ticks != 0;
     near.tick = state.tick;
-    if (same_frame && near.listed.count == capsules.count &&
-        moved_since(near.listed, capsules) <= kInstrumentMargin_m)
+    if (same_frame && near.listed.count == capsules.count && moved_since(near.listed, capsules) <= kInstrumentMargin_m)
         return;
-    near.groups.resize(work.groups.size());
-    near.groups.resize(list_near_groups(places, work.groups, capsules,
-                                        further_m + kInstrumentMargin_m + kTissueMargin_m, near.groups.data()));
     near.listed = capsules;
+    list_near_phyxels(places, work.groups, capsules, further_m + kInstrumentMargin_m + kTissueMargin_m, near);
 }
 
 }  // namespace
@@ -214,20 +227,24 @@ void list_groups(const tissue::State& state, const Capsules& capsules,
 NearWork make_near_work(const tissue::Model& model, const Work& work) {
     NearWork near;
     const int m = model.hexels_per_edge;
-    near.weight.assign(work.hexel_weight.size(), 0.0f);
-    near.weighted.assign(static_cast<std::size_t>(model.hexels_per_phyxel()), 0);
+    near.weights.resize(static_cast<std::size_t>(model.hexels_per_phyxel()));
     for (auto& axis : near.offset_m) axis.assign(64, 0.0f);
-    for (std::size_t bit = 0; bit < near.weighted.size(); ++bit) {
-        for (std::size_t k = 0; k < kNeighbourhood; ++k) {
-            const float weight = work.hexel_weight[kNeighbourhood * bit + k];
-            near.weight[kNeighbourhood * bit + kCarrierPlace[k]] = weight;
-            if (weight > 0.0f) near.weighted[bit] |= 1u << kCarrierPlace[k];
+    std::array<std::size_t, kNeighbourhood> cell{};  // of a carrier
+    for (std::size_t k = 0; k < kNeighbourhood; ++k) cell[kCarrierPlace[k]] = k;
+    for (std::size_t bit = 0; bit < near.weights.size(); ++bit) {
+        std::size_t count = 0;
+        for (std::size_t n = 0; n < kNeighbourhood; ++n) {
+            const float weight = work.hexel_weight[kNeighbourhood * bit + cell[n]];
+            if (weight == 0.0f) continue;
+            assert(count < kMostWeighted);
+            near.weights[bit].weight[count] = weight;
+            near.weights[bit].carrier[count++] = static_cast<std::int32_t>(n);
         }
         const Vec3 r = (Vec3(hexel_of_bit(m, static_cast<int>(bit))) - 0.5 * (m - 1)) * model.hexels.spacing_m;
         for (std::size_t axis = 0; axis < 3; ++axis)
             near.offset_m[axis][bit] = static_cast<float>(r[static_cast<int>(axis)]);
     }
-    near.groups.reserve(work.groups.size());
+    near.blocks.reserve(static_cast<std::size_t>(model.phyxel_initial.count() / 16 + 1));
     return near;
 }
 
@@ -242,13 +259,13 @@ void find_near(const tissue::Model& model, const tissue::State& state, tissue::E
         places.displacement_m[r] = state.displacement_m[r].data();
     }
     const auto further_m = static_cast<float>(kPhyxelMargin * model.phyxels.spacing_m);
-    list_groups(state, search.capsules, places, further_m, work);
-    find_near_lanes(places, work.groups, search.capsules, further_m, work.near.groups);
-    for (const NearGroup& near : work.near.groups) {
-        const Group& group = work.groups[static_cast<std::size_t>(near.group)];
-        for (std::uint32_t rest = group.present & near.lanes; rest != 0; rest &= rest - 1)
-            search.add_hexels(group.first + __builtin_ctz(rest));
-    }
+    list_phyxels(state, search.capsules, places, further_m, work);
+    find_near_phyxels(places, search.capsules, further_m, work.near);
+    for (const NearBlock& block : work.near.blocks)
+        for (std::uint32_t rest = block.near; rest != 0; rest &= rest - 1) {
+            const std::int64_t phyxel = block.cell[static_cast<std::size_t>(__builtin_ctz(rest))];
+            if (state.phyxel_present.test(phyxel)) search.add_hexels(phyxel);
+        }
     search.keep_near();
     std::sort(exchange.near.begin(), exchange.near.end(),
               [](const tissue::NearHexel& a, const tissue::NearHexel& b) { return a.hexel < b.hexel; });

@@ -66,24 +66,18 @@ NearWork make_near_work(const tissue::Model& model, const Work& work);
 
 // ---- Phyxels
 
-/// A box in the world.
-struct Box3f {
-    Vec3f low, high;
-};
-
 /// Where phyxels are: centres at rest and displacements, over the phyxel lattice.
 struct PlaceView {
     std::array<const float*, 3> rest_m{}, displacement_m{};
 };
 
-/// Lists the groups with a phyxel whose centre is at most `further_m` beyond a capsule's reach, in the world. There is
-/// room for all groups at `list`; returns how many there are.
-std::size_t list_near_groups(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules,
-                             float further_m, NearGroup* list);
+/// Lists the phyxels whose centres are at most `further_m` beyond a capsule's reach, in the world. There is room for
+/// all.
+void list_near_phyxels(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
+                       NearWork& near);
 
-/// Sets NearGroup::lanes to the cells whose centres are so now. Cells that are not there may have bits, too.
-void find_near_lanes(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
-                     std::span<NearGroup> list);
+/// Sets NearBlock::near to those that are so now.
+void find_near_phyxels(const PlaceView& view, const Capsules& capsules, float further_m, NearWork& near);
 
 // ---- Hexels of one phyxel
 
@@ -94,7 +88,8 @@ struct CellView {
     alignas(64) std::array<std::array<float, 32>, 3> step_m;  ///< [slot] from the phyxel's centre to the slot's
     std::array<std::uint8_t, 28> place;                       ///< [slot] in the order of carriers
     const NearWork* tables;
-    const CapsuleLanes* capsules;
+    const Capsules* capsules;
+    const CapsuleLanes* lanes;  ///< the same
     float half_m;  ///< half edge of the cube of hexel centres
 };
 

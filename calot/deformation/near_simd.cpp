@@ -54,9 +54,9 @@ HWY_INLINE V squared_distance(const CapsuleF& capsule, V px, V py, V pz) {
 }
 
 /// Lanes at most `further_m` beyond a capsule's reach.
-HWY_INLINE std::uint32_t within(const CapsuleF& capsule, V px, V py, V pz, float further_m) {
+HWY_INLINE hn::Mask<D> within(const CapsuleF& capsule, V px, V py, V pz, float further_m) {
     const float most = capsule.radius + (capsule.reach + further_m);
-    return bits_of(hn::Le(squared_distance(capsule, px, py, pz), hn::Set(D(), most * most)));
+    return hn::Le(squared_distance(capsule, px, py, pz), hn::Set(D(), most * most));
 }
 
 HWY_INLINE V place(const PlaceView& view, std::size_t axis, std::int64_t i) {
@@ -64,46 +64,65 @@ HWY_INLINE V place(const PlaceView& view, std::size_t axis, std::int64_t i) {
     return hn::Add(hn::LoadU(d, view.rest_m[axis] + i), hn::LoadU(d, view.displacement_m[axis] + i));
 }
 
-HWY_INLINE bool any_inside(V x, V y, V z, const Box3f& box) {
+void list_phyxels(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
+                  std::span<const CapsuleF> bounds, NearWork& near) {
     const D d;
-    hn::Mask<D> inside = hn::And(hn::Ge(x, hn::Set(d, box.low.x)), hn::Le(x, hn::Set(d, box.high.x)));
-    inside = hn::And(inside, hn::And(hn::Ge(y, hn::Set(d, box.low.y)), hn::Le(y, hn::Set(d, box.high.y))));
-    inside = hn::And(inside, hn::And(hn::Ge(z, hn::Set(d, box.low.z)), hn::Le(z, hn::Set(d, box.high.z))));
-    return !hn::AllFalse(d, inside);
-}
-
-std::size_t list_groups(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
-                        const Box3f* boxes, NearGroup* list) {
-    std::size_t count = 0;
-    const Box3f& all = boxes[capsules.count];
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        std::uint32_t near = 0;
+    near.blocks.clear();
+    std::size_t free = 0;  // lanes of the last block
+    for (const Group& group : groups) {
+        if (group.present == 0) continue;
         for (int lane = 0; lane < kGroupCells; lane += kLanes) {
-            const std::int64_t i = groups[g].first + lane;
+            const std::int64_t i = group.first + lane;
             const V x = place(view, 0, i), y = place(view, 1, i), z = place(view, 2, i);
-            if (!any_inside(x, y, z, all)) continue;
-            const std::uint32_t present = static_cast<std::uint32_t>(groups[g].present) >> lane;
-            for (std::size_t k = 0; k < capsules.count; ++k)
-                if (any_inside(x, y, z, boxes[k]) && (within(capsules.item[k], x, y, z, further_m) & present) != 0)
-                    near |= 1u << k;
+            const auto present = simd::mask_of(d, group.present, lane);
+            hn::Mask<D> lanes = hn::FirstN(d, 0);
+            std::uint32_t which = 0;
+            for (const CapsuleF& bound : bounds) {
+                if (hn::AllFalse(d, within(bound, x, y, z, 0.0f))) continue;
+                for (std::size_t k = 0; k < capsules.count; ++k) {
+                    if (capsules.item[k].instrument != bound.instrument) continue;
+                    const auto near_lanes = hn::And(within(capsules.item[k], x, y, z, further_m), present);
+                    lanes = hn::Or(lanes, near_lanes);
+                    which |= (hn::AllFalse(d, near_lanes) ? 0u : 1u) << k;
+                }
+            }
+            if (which == 0) continue;
+            for (std::uint32_t rest = bits_of(lanes); rest != 0; rest &= rest - 1) {
+                if (free == 0) {
+                    near.blocks.emplace_back();
+                    free = 16;
+                }
+                NearBlock& block = near.blocks.back();
+                const std::size_t at = 16 - free--;
+                const std::int64_t cell = i + __builtin_ctz(rest);
+                block.cell[at] = static_cast<std::int32_t>(cell);
+                for (std::size_t r = 0; r < 3; ++r) block.rest_m[r][at] = view.rest_m[r][cell];
+                block.there = static_cast<std::uint16_t>(block.there | 1u << at);
+                block.capsules = static_cast<std::uint16_t>(block.capsules | which);
+            }
         }
-        if (near == 0) continue;
-        list[count++] = {static_cast<std::int32_t>(g), static_cast<std::uint16_t>(near), 0};
     }
-    return count;
 }
 
-void near_lanes(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
-                std::span<NearGroup> list) {
-    for (NearGroup& item : list) {
+void find_phyxels(const PlaceView& view, const Capsules& capsules, float further_m, NearWork& near) {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    for (NearBlock& block : near.blocks) {
         std::uint32_t bits = 0;
-        for (int lane = 0; lane < kGroupCells; lane += kLanes) {
-            const std::int64_t i = groups[static_cast<std::size_t>(item.group)].first + lane;
-            const V x = place(view, 0, i), y = place(view, 1, i), z = place(view, 2, i);
-            for (std::uint32_t rest = item.capsules; rest != 0; rest &= rest - 1)
-                bits |= within(capsules.item[static_cast<std::size_t>(__builtin_ctz(rest))], x, y, z, further_m) << lane;
+        for (std::size_t lane = 0; lane < 16; lane += kLanes) {
+            const auto cells = hn::Load(di, block.cell.data() + lane);
+            const auto at = [&](std::size_t r) HWY_ATTR {
+                return hn::Add(hn::Load(d, block.rest_m[r].data() + lane),
+                               hn::GatherIndex(d, view.displacement_m[r], cells));
+            };
+            const V x = at(0), y = at(1), z = at(2);
+            hn::Mask<D> near_lanes = hn::FirstN(d, 0);
+            for (std::uint32_t rest = block.capsules; rest != 0; rest &= rest - 1)
+                near_lanes = hn::Or(
+                    near_lanes, within(capsules.item[static_cast<std::size_t>(__builtin_ctz(rest))], x, y, z, further_m));
+            bits |= bits_of(near_lanes) << lane;
         }
-        item.lanes = static_cast<std::uint16_t>(bits);
+        block.near = static_cast<std::uint16_t>(bits & block.there);
     }
 }
 
@@ -219,36 +238,36 @@ HWY_INLINE std::uint64_t reached(const CellView& view, const SlotFields& fields,
                            dot(rx, ry, rz, hn::Set(d, fx[axis]), hn::Set(d, fy[axis]), hn::Set(d, fz[axis])));
         };
         const V x = at(0), y = at(1), z = at(2);
-        std::uint32_t bits = 0;
-        for (std::uint32_t rest = which; rest != 0; rest &= rest - 1) {
-            const auto k = static_cast<std::size_t>(__builtin_ctz(rest));
-            const CapsuleLanes& c = *view.capsules;
-            const V squared = squared_distance(
-                hn::Sub(x, hn::Set(d, c.a[0][k])), hn::Sub(y, hn::Set(d, c.a[1][k])), hn::Sub(z, hn::Set(d, c.a[2][k])),
-                hn::Set(d, c.ab[0][k]), hn::Set(d, c.ab[1][k]), hn::Set(d, c.ab[2][k]),
-                hn::Set(d, c.inverse_length2[k]));
-            const float most = std::max(0.0f, c.within[k] + further_m);
-            bits |= bits_of(hn::Le(squared, hn::Set(d, most * most)));
-        }
-        found |= (here & bits) << lane;
+        hn::Mask<D> lanes = hn::FirstN(d, 0);
+        for (std::uint32_t rest = which; rest != 0; rest &= rest - 1)
+            lanes = hn::Or(lanes, within(view.capsules->item[static_cast<std::size_t>(__builtin_ctz(rest))], x, y, z,
+                                         further_m));
+        found |= (here & bits_of(lanes)) << lane;
     }
     return found;
 }
 
-/// sum_n weight[n] field[n] / sum_n weight[n] over the carriers in their order, as blend() of carriers.h.
-HWY_INLINE void blend_one(const PaddedField* fields, const float* weight, std::uint32_t carriers, float* out) {
+/// sum_n weight[n] field[n] / sum_n weight[n] over the carriers in their order, as blend() of carriers.h. Those that are
+/// not there count with a weight of 0: their number is hard to predict.
+HWY_INLINE void blend_one(const PaddedField* fields, const HexelWeights& table, std::uint32_t carriers, float* out) {
     const D d;
-    float total = 0.0f;
-    for (std::uint32_t rest = carriers; rest != 0; rest &= rest - 1)
-        total += weight[static_cast<std::size_t>(__builtin_ctz(rest))];
-    const V inverse = hn::Set(d, 1.0f / total);
+    const hn::RebindToUnsigned<D> du;
+    alignas(64) std::array<float, 16> weight;
+    for (std::size_t n = 0; n < 16; n += kLanes) {
+        const auto place = hn::BitCast(du, hn::Load(hn::RebindToSigned<D>(), table.carrier.data() + n));
+        const auto one = hn::Set(du, 1u);
+        const auto there = hn::Eq(hn::And(hn::Shr(hn::Set(du, carriers), place), one), one);
+        hn::Store(hn::IfThenElseZero(hn::RebindMask(d, there), hn::Load(d, table.weight.data() + n)), d,
+                  weight.data() + n);
+    }
     for (std::size_t c = 0; c < 12; c += kLanes) {
-        V sum = hn::Zero(d);
-        for (std::uint32_t rest = carriers; rest != 0; rest &= rest - 1) {
-            const auto n = static_cast<std::size_t>(__builtin_ctz(rest));
-            sum = hn::Add(sum, hn::Mul(hn::Set(d, weight[n]), hn::Load(d, fields[n].data() + c)));
+        V sum = hn::Zero(d), total = sum;
+        for (std::size_t n = 0; n < kMostWeighted; ++n) {
+            const V w = hn::Set(d, weight[n]);
+            total = hn::Add(total, w);
+            sum = hn::Add(sum, hn::Mul(w, hn::Load(d, fields[table.carrier[n]].data() + c)));
         }
-        hn::Store(hn::Mul(sum, inverse), d, out + c);
+        hn::Store(hn::Mul(sum, hn::Div(hn::Set(d, 1.0f), total)), d, out + c);
     }
 }
 
@@ -261,7 +280,7 @@ std::uint64_t blend_cell(const CellView& view, const Cell& cell, PaddedField* bl
     const float stretch_m =
         view.half_m * longest_diagonal(fields.own_column(0), fields.own_column(1), fields.own_column(2));
     const Vec3f centre_m = cell.centre_m + Vec3f(fields.of[0][kOwnSlot], fields.of[1][kOwnSlot], fields.of[2][kOwnSlot]);
-    const std::uint32_t which = which_reach(*view.capsules, centre_m, spread_m + stretch_m);
+    const std::uint32_t which = which_reach(*view.lanes, centre_m, spread_m + stretch_m);
     if (which == 0) return 0;
     const std::uint64_t hexels = reached(view, fields, centre_m, which, spread_m, cell.hexels);
     if (hexels == 0) return 0;
@@ -270,8 +289,7 @@ std::uint64_t blend_cell(const CellView& view, const Cell& cell, PaddedField* bl
     fields.turn(view, of);
     for (std::uint64_t rest = hexels; rest != 0; rest &= rest - 1) {
         const auto bit = static_cast<std::size_t>(__builtin_ctzll(rest));
-        blend_one(of, view.tables->weight.data() + kNeighbourhood * bit, cell.carriers & view.tables->weighted[bit],
-                  (blended++)->data());
+        blend_one(of, view.tables->weights[bit], cell.carriers, (blended++)->data());
     }
     return hexels;
 }
@@ -303,10 +321,47 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace calot::deformation {
 
-HWY_EXPORT(list_groups);
-HWY_EXPORT(near_lanes);
+HWY_EXPORT(list_phyxels);
+HWY_EXPORT(find_phyxels);
 HWY_EXPORT(blend_cell);
 HWY_EXPORT(measure_places);
+
+namespace {
+
+/// One capsule about all that is `further_m` beyond the reach of an instrument's, along the longest of them; false where
+/// it has none. Its reach is within its radius.
+bool bound(const Capsules& capsules, tissue::Instrument instrument, float further_m, CapsuleF& out) {
+    const CapsuleF* longest = nullptr;
+    for (std::size_t k = 0; k < capsules.count; ++k) {
+        const CapsuleF& item = capsules.item[k];
+        if (item.instrument != instrument) continue;
+        if (longest == nullptr || glm::dot(item.ab, item.ab) > glm::dot(longest->ab, longest->ab)) longest = &item;
+    }
+    if (longest == nullptr) return false;
+    float first = 0.0f, last = 1.0f, aside_m = 0.0f, most_m = 0.0f;
+    for (std::size_t k = 0; k < capsules.count; ++k) {
+        const CapsuleF& item = capsules.item[k];
+        if (item.instrument != instrument) continue;
+        most_m = std::max(most_m, item.radius + item.reach);
+        for (const Vec3f& end : {item.a, item.a + item.ab}) {
+            const Vec3f from = end - longest->a;
+            const float t = glm::dot(from, longest->ab) * longest->inverse_length2;
+            first = std::min(first, t);
+            last = std::max(last, t);
+            aside_m = std::max(aside_m, glm::length(from - t * longest->ab));
+        }
+    }
+    constexpr float kRounding_m = 1e-5f;
+    out = *longest;
+    out.a += first * longest->ab;
+    out.ab *= last - first;
+    out.inverse_length2 = out.inverse_length2 / ((last - first) * (last - first));
+    out.radius = most_m + aside_m + further_m + kRounding_m;
+    out.reach = 0.0f;
+    return true;
+}
+
+}  // namespace
 
 CapsuleLanes::CapsuleLanes(const Capsules& capsules) : a{}, ab{}, inverse_length2{}, within{} {
     within.fill(-1e9f);
@@ -321,23 +376,17 @@ CapsuleLanes::CapsuleLanes(const Capsules& capsules) : a{}, ab{}, inverse_length
     }
 }
 
-std::size_t list_near_groups(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules,
-                             float further_m, NearGroup* list) {
-    std::array<Box3f, 17> boxes;  // of each capsule, then of all
-    Box3f& all = boxes[capsules.count];
-    all = {Vec3f(1e9f), Vec3f(-1e9f)};
-    for (std::size_t k = 0; k < capsules.count; ++k) {
-        const CapsuleF& capsule = capsules.item[k];
-        const Vec3f b = capsule.a + capsule.ab, most(capsule.radius + (capsule.reach + further_m));
-        boxes[k] = {glm::min(capsule.a, b) - most, glm::max(capsule.a, b) + most};
-        all = {glm::min(all.low, boxes[k].low), glm::max(all.high, boxes[k].high)};
-    }
-    return HWY_DYNAMIC_DISPATCH(list_groups)(view, groups, capsules, further_m, boxes.data(), list);
+void list_near_phyxels(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
+                       NearWork& near) {
+    std::array<CapsuleF, tissue::kInstruments> bounds;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < tissue::kInstruments; ++k)
+        if (bound(capsules, static_cast<tissue::Instrument>(k), further_m, bounds[count])) ++count;
+    HWY_DYNAMIC_DISPATCH(list_phyxels)(view, groups, capsules, further_m, {bounds.data(), count}, near);
 }
 
-void find_near_lanes(const PlaceView& view, std::span<const Group> groups, const Capsules& capsules, float further_m,
-                     std::span<NearGroup> list) {
-    HWY_DYNAMIC_DISPATCH(near_lanes)(view, groups, capsules, further_m, list);
+void find_near_phyxels(const PlaceView& view, const Capsules& capsules, float further_m, NearWork& near) {
+    HWY_DYNAMIC_DISPATCH(find_phyxels)(view, capsules, further_m, near);
 }
 
 std::uint64_t blend_near(const CellView& view, const Cell& cell, PaddedField* blended) {

@@ -17,6 +17,7 @@ struct CapsuleF {
     float inverse_length2, radius;
     float reach;  ///< hexels within this of its surface are near
     bool bare;
+    tissue::Instrument instrument;
 };
 
 /// Capsules in single precision. At most 16: more than any instrument has.
@@ -28,22 +29,32 @@ struct Capsules {
     Capsules(const std::vector<tissue::Capsule>& capsules, const NearReach& reach);
 };
 
-/// A group of which phyxels may come near these capsules before the frame ends.
-struct NearGroup {
-    std::int32_t group = 0;
-    std::uint16_t capsules = 0;
-    std::uint16_t lanes = 0;  ///< that are near now
+/// Sixteen phyxels that may come near some of the capsules before the frame ends.
+struct NearBlock {
+    alignas(64) std::array<std::int32_t, 16> cell{};
+    alignas(64) std::array<std::array<float, 16>, 3> rest_m{};
+    std::uint16_t there = 0;     ///< lanes
+    std::uint16_t capsules = 0;  ///< those capsules
+    std::uint16_t near = 0;      ///< lanes that are near now
+};
+
+/// Most carriers with a weight above 0 of a hexel's centre, however many hexels a phyxel has.
+inline constexpr int kMostWeighted = 12;
+
+/// A hexel's centre, which sits at the same place in every phyxel's cell: kernel towards those carriers that have any, in
+/// their order (carriers.h).
+struct HexelWeights {
+    alignas(64) std::array<float, 16> weight{};
+    alignas(64) std::array<std::int32_t, 16> carrier{};
 };
 
 struct NearWork {
-    // Of hexel centres, which sit at the same m^3 places in every phyxel's cell (bit as in Work::occupancy)
-    Array<float> weight;                   ///< [m^3][kNeighbourhood] kernel towards carriers in their order (carriers.h)
-    Array<std::uint32_t> weighted;         ///< [m^3] bits of those that are not 0
-    std::array<Array<float>, 3> offset_m;  ///< [64] from the cell's centre
+    std::vector<HexelWeights, AlignedAllocator<HexelWeights>> weights;  ///< [m^3], bit as in Work::occupancy
+    std::array<Array<float>, 3> offset_m;  ///< [64] of the same centres from the cell's
 
-    std::vector<NearGroup> groups;  ///< ascending
+    std::vector<NearBlock, AlignedAllocator<NearBlock>> blocks;  ///< cells ascend
     std::int64_t tick = -1;         ///< of the last search
-    Capsules listed;                ///< where they were when `groups` were listed
+    Capsules listed;                ///< where they were when `blocks` were listed
 };
 
 }  // namespace calot::deformation
