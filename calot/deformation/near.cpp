@@ -166,12 +166,21 @@ struct Search {
         cell.carriers = carrier_bits(model, work, phyxel);
         const std::uint64_t found = blend_near(view, cell, field.data() + places.count);
         if (found == 0) return;
-        const Int3 first = model.phyxels.coordinates(phyxel) * shifts.m;
+        const int m = shifts.m;
+        const Int3 first = model.phyxels.coordinates(phyxel) * m;
+        const std::int64_t first_hexel = model.hexels.index(first);
+        std::array<std::array<float, 4>, 3> along_m;  // rest positions of hexels along the axes
+        for (int c = 0; c < m; ++c) {
+            const Vec3f centre_m(model.hexels.centre_m(first + c));
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                along_m[axis][static_cast<std::size_t>(c)] = centre_m[static_cast<int>(axis)];
+        }
         for (std::uint64_t rest = found; rest != 0; rest &= rest - 1) {
-            const Int3 c = first + hexel_of_bit(shifts.m, __builtin_ctzll(rest));
+            const auto bit = static_cast<std::size_t>(__builtin_ctzll(rest));
+            const std::array<std::uint8_t, 3>& at = work.near.local[bit];
             const std::size_t k = places.count++;
-            hexel[k] = model.hexels.index(c);
-            rest_m[k] = Vec3f(model.hexels.centre_m(c));
+            hexel[k] = first_hexel + work.near.hexel_offset[bit];
+            rest_m[k] = Vec3f(along_m[0][at[0]], along_m[1][at[1]], along_m[2][at[2]]);
             const Vec3f world_m = rest_m[k] + displacement_at(field[k], rest_m[k] - cell.centre_m);
             for (std::size_t axis = 0; axis < 3; ++axis) places.world_m[axis][k] = world_m[static_cast<int>(axis)];
         }
@@ -240,7 +249,11 @@ NearWork make_near_work(const tissue::Model& model, const Work& work) {
             near.weights[bit].weight[count] = weight;
             near.weights[bit].carrier[count++] = static_cast<std::int32_t>(n);
         }
-        const Vec3 r = (Vec3(hexel_of_bit(m, static_cast<int>(bit))) - 0.5 * (m - 1)) * model.hexels.spacing_m;
+        const Int3 local = hexel_of_bit(m, static_cast<int>(bit));
+        near.hexel_offset[bit] = model.hexels.offset(local);
+        for (int axis = 0; axis < 3; ++axis)
+            near.local[bit][static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(local[axis]);
+        const Vec3 r = (Vec3(local) - 0.5 * (m - 1)) * model.hexels.spacing_m;
         for (std::size_t axis = 0; axis < 3; ++axis)
             near.offset_m[axis][bit] = static_cast<float>(r[static_cast<int>(axis)]);
     }

@@ -267,7 +267,7 @@ HWY_INLINE void blend_one(const PaddedField* fields, const HexelWeights& table, 
             total = hn::Add(total, w);
             sum = hn::Add(sum, hn::Mul(w, hn::Load(d, fields[table.carrier[n]].data() + c)));
         }
-        hn::Store(hn::Mul(sum, hn::Div(hn::Set(d, 1.0f), total)), d, out + c);
+        hn::Store(hn::Mul(sum, hn::Set(d, 1.0f / hn::GetLane(total))), d, out + c);
     }
 }
 

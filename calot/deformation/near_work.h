@@ -51,6 +51,8 @@ struct HexelWeights {
 struct NearWork {
     std::vector<HexelWeights, AlignedAllocator<HexelWeights>> weights;  ///< [m^3], bit as in Work::occupancy
     std::array<Array<float>, 3> offset_m;  ///< [64] of the same centres from the cell's
+    std::array<std::array<std::uint8_t, 3>, 64> local{};  ///< coordinates in the cell
+    std::array<std::int64_t, 64> hexel_offset{};          ///< from the cell's first hexel
 
     std::vector<NearBlock, AlignedAllocator<NearBlock>> blocks;  ///< cells ascend
     std::int64_t tick = -1;         ///< of the last search
