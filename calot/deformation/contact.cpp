@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calot/base/random.h"
 #include "calot/deformation/contact_kernel.h"
 #include "calot/deformation/contact_spread.h"
 #include "calot/deformation/ghosts.h"
@@ -237,8 +238,13 @@ void list_points(const Model& model, const State& state, const tissue::Exchange&
 }
 
 void carry_points(const Model& model, const State& state, Work& work) {
-    for (std::size_t c = 0; c < work.contact.points.size(); ++c)
-        local_shares(model, state, work, work.contact.points[c].hexel, work.contact.local[c]);
+    // Points of a phyxel come one after another or nearly so.
+    std::array<PhyxelCarriers, 8> kept;
+    for (std::size_t c = 0; c < work.contact.points.size(); ++c) {
+        const std::int64_t hexel = work.contact.points[c].hexel;
+        const auto phyxel = static_cast<std::uint64_t>(model.phyxel_of(model.hexels.coordinates(hexel)));
+        local_shares(model, state, work, hexel, kept[mix64(phyxel) % kept.size()], work.contact.local[c]);
+    }
     fill_lines(work);
 }
 

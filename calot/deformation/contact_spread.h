@@ -4,13 +4,27 @@
 #include <array>
 #include <cstdint>
 
+#include "calot/deformation/neighbours.h"
 #include "calot/deformation/work.h"
 
 namespace calot::deformation {
 
-/// Of the centre of a hexel. All zero when nothing carries it.
+/// What carries the hexels of one phyxel: the same for all points in it.
+struct PhyxelCarriers {
+    struct Carrier {
+        Mat3f moment_inverse{0.0f};
+        Vec3f step_m{0.0f};                        ///< from the phyxel
+        std::uint32_t cell = 0;                    ///< of the neighbourhood
+        std::uint32_t links = 0, first = 0, at = 0;  ///< as in CarrierShare
+    };
+    std::int64_t phyxel = -1;
+    std::size_t count = 0;
+    std::array<Carrier, kNeighbourhood> carrier;
+};
+
+/// Of the centre of a hexel. All zero when nothing carries it. `carriers` are renewed if they are another phyxel's.
 void local_shares(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t hexel,
-                  LocalShares& out);
+                  PhyxelCarriers& carriers, LocalShares& out);
 
 /// A carrier j's part: phi_j (u_j + G_j (X - X_j)), G_j (X - X_j) = sum_l w u_jl (X_jl . A_j^-1 (X - X_j)).
 struct CarrierShare {
