@@ -13,8 +13,8 @@ namespace calot::deformation {
 struct PhyxelCarriers {
     struct Carrier {
         Mat3f moment_inverse{0.0f};
-        Vec3f step_m{0.0f};                        ///< from the phyxel
-        std::uint32_t cell = 0;                    ///< of the neighbourhood
+        Vec3f step_m{0.0f};                          ///< from the phyxel
+        std::uint32_t cell = 0;                      ///< of the neighbourhood
         std::uint32_t links = 0, first = 0, at = 0;  ///< as in CarrierShare
     };
     std::int64_t phyxel = -1;
@@ -28,11 +28,11 @@ void local_shares(const tissue::Model& model, const tissue::State& state, const 
 
 /// A carrier j's part: phi_j (u_j + G_j (X - X_j)), G_j (X - X_j) = sum_l w u_jl (X_jl . A_j^-1 (X - X_j)).
 struct CarrierShare {
-    Vec3f lever{0.0f};         ///< phi_j s A_j^-1 (X - X_j)
+    Vec3f lever{0.0f};  ///< phi_j s A_j^-1 (X - X_j)
     float phi = 0.0f;
-    std::uint32_t links = 0;   ///< Work::link_word
-    std::uint32_t first = 0;   ///< x of the cell before it in its row of LocalShares
-    std::uint32_t at = 0;      ///< where its row begins there
+    std::uint32_t links = 0;  ///< Work::link_word
+    std::uint32_t first = 0;  ///< x of the cell before it in its row of LocalShares
+    std::uint32_t at = 0;     ///< where its row begins there
 };
 
 /// Sets `share` and `there` to the sum of the carriers' parts.

@@ -1,4 +1,5 @@
-// psi a row at a time (contact_spread.h). Each share is a sum over carriers in their order, whatever the vector's width.
+// psi a row at a time (contact_spread.h). Each share is a sum over carriers in their order, whatever the vector's
+// width.
 
 #include <array>
 

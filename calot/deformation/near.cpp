@@ -1,8 +1,9 @@
 // The surface hexels near the instrument, in the world.
 //
-// Phyxels first: those whose moved centre lies near a capsule. Then their surface hexels, by words: a hexel is inside
-// where all six shifted neighbours are filled. The centres of hexels sit at the same m^3 places in every cell, so
-// their kernel values are a table (Work::hexel_weight), and only which carriers live differs.
+// Phyxels first: those whose moved centre lies near a capsule, looked for among those that the frame's list holds. Then
+// their surface hexels, by words: a hexel is inside where all six shifted neighbours are filled. The centres of hexels
+// sit at the same m^3 places in every cell, so their kernel values are a table (NearWork), and only which carriers live
+// differs.
 //
 // Blending is what costs, so most is ruled out before: a blend lies within the carriers' fields, and these differ from
 // the owner's own by no more than a bound that is the same for the whole cell.
@@ -73,7 +74,8 @@ constexpr auto kPaddedOutward = [] {
 
 /// Away from the tissue at rest: against the sum of the directions to the 26 neighbours that are filled. 0 where they
 /// balance, as in a sheet one hexel thick.
-Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const NeighbourRows& rows, std::int64_t hexel) {
+Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const NeighbourRows& rows,
+                   std::int64_t hexel) {
     // Four numbers at a time; the fourth is not used.
     Four sum{};
     for (std::size_t row = 0; row < rows.offset.size(); ++row) {
@@ -134,8 +136,15 @@ struct Search {
 
     Search(const tissue::Model& model_, const tissue::State& state_, tissue::Exchange& exchange_, const Work& work_,
            const NearReach& reach)
-        : model(model_), state(state_), exchange(exchange_), work(work_), capsules(exchange_.capsules, reach),
-          lanes(capsules), shifts(model_.hexels_per_edge), phyxel_rows(model_.phyxels), hexel_rows(model_.hexels) {
+        : model(model_),
+          state(state_),
+          exchange(exchange_),
+          work(work_),
+          capsules(exchange_.capsules, reach),
+          lanes(capsules),
+          shifts(model_.hexels_per_edge),
+          phyxel_rows(model_.phyxels),
+          hexel_rows(model_.hexels) {
         for (std::size_t r = 0; r < 3; ++r) view.field[r] = state.displacement_m[r].data();
         for (std::size_t e = 0; e < 9; ++e) view.field[3 + e] = work.gradient[e].data();
         view.row = phyxel_rows.offset;

@@ -41,7 +41,8 @@ struct NeighbourRows {
     explicit NeighbourRows(const Lattice& lattice) {
         const int fast = lattice.stride.x == 1 ? 0 : lattice.stride.y == 1 ? 1 : 2;
         axis = {fast, (fast + 1) % 3, (fast + 2) % 3};
-        for (std::size_t row = 0; row < offset.size(); ++row) offset[row] = lattice.offset(step(3 * static_cast<int>(row)));
+        for (std::size_t row = 0; row < offset.size(); ++row)
+            offset[row] = lattice.offset(step(3 * static_cast<int>(row)));
     }
     /// To the k-th cell, rows one after another.
     Int3 step(int k) const {
@@ -83,14 +84,14 @@ void find_near_phyxels(const PlaceView& view, const Capsules& capsules, float fu
 
 /// Constant over a tick. Cells of the neighbourhood are in rows here, row by row (slots).
 struct CellView {
-    std::array<const float*, 12> field;  ///< u (3), G (9, row-major) over the phyxel lattice
-    std::array<std::int64_t, 9> row;     ///< NeighbourRows::offset
+    std::array<const float*, 12> field;                       ///< u (3), G (9, row-major) over the phyxel lattice
+    std::array<std::int64_t, 9> row;                          ///< NeighbourRows::offset
     alignas(64) std::array<std::array<float, 32>, 3> step_m;  ///< [slot] from the phyxel's centre to the slot's
     std::array<std::uint8_t, 28> place;                       ///< [slot] in the order of carriers
     const NearWork* tables;
     const Capsules* capsules;
     const CapsuleLanes* lanes;  ///< the same
-    float half_m;  ///< half edge of the cube of hexel centres
+    float half_m;               ///< half edge of the cube of hexel centres
 };
 
 /// One phyxel: what carries its hexels.
@@ -104,8 +105,8 @@ struct Cell {
 /// Blended fields (a, G as in CarrierFields), padded.
 using PaddedField = std::array<float, 16>;
 
-/// Of the hexels asked for, those that may be within a capsule's reach; the field at each of them in turn, in `blended`.
-/// None is missing that is within reach.
+/// Of the hexels asked for, those that may be within a capsule's reach; the field at each of them in turn, in
+/// `blended`. None is missing that is within reach.
 std::uint64_t blend_near(const CellView& view, const Cell& cell, PaddedField* blended);
 
 /// Places in the world and what is known of them, sixteen at a time; lanes past `count` are anything.

@@ -1,6 +1,6 @@
-// The wide parts of the search for near hexels (near_kernel.h). What only rules out may round as it likes, with a margin;
-// what is kept is computed as a plain loop over hexels, carriers and capsules would: every instruction set gives the
-// same bytes.
+// The wide parts of the search for near hexels (near_kernel.h). What only rules out may round as it likes, with a
+// margin; what is kept is computed as a plain loop over hexels, carriers and capsules would: every instruction set
+// gives the same bytes.
 
 #include <algorithm>
 #include <cmath>
@@ -118,8 +118,8 @@ void find_phyxels(const PlaceView& view, const Capsules& capsules, float further
             const V x = at(0), y = at(1), z = at(2);
             hn::Mask<D> near_lanes = hn::FirstN(d, 0);
             for (std::uint32_t rest = block.capsules; rest != 0; rest &= rest - 1)
-                near_lanes = hn::Or(
-                    near_lanes, within(capsules.item[static_cast<std::size_t>(__builtin_ctz(rest))], x, y, z, further_m));
+                near_lanes = hn::Or(near_lanes, within(capsules.item[static_cast<std::size_t>(__builtin_ctz(rest))], x,
+                                                       y, z, further_m));
             bits |= bits_of(near_lanes) << lane;
         }
         block.near = static_cast<std::uint16_t>(bits & block.there);
@@ -156,20 +156,20 @@ struct SlotFields {
     /// How far apart the displacements of any of `slots` and of the own field can be, within `radius_m` of the centre.
     HWY_INLINE float spread(std::uint32_t slots, float radius_m) const {
         const D d;
-        V offset2 = hn::Zero(d), gradient2 = offset2;
+        V most = hn::Zero(d);
         for (std::size_t s = 0; s < 32; s += kLanes) {
-            V a = hn::Zero(d), g = a;
-            for (std::size_t c = 0; c < 12; ++c) {
-                const V off = hn::Sub(hn::Load(d, of[c] + s), hn::Set(d, of[c][kOwnSlot]));
-                V& sum = c < 3 ? a : g;
-                sum = hn::Add(sum, hn::Mul(off, off));
-            }
+            const auto squared = [&](std::size_t c) HWY_ATTR {
+                const auto off = [&](std::size_t k)
+                                     HWY_ATTR { return hn::Sub(hn::Load(d, of[k] + s), hn::Set(d, of[k][kOwnSlot])); };
+                const V x = off(c), y = off(c + 1), z = off(c + 2);
+                return dot(x, y, z, x, y, z);
+            };
+            const V gradient = hn::Sqrt(hn::Add(hn::Add(squared(3), squared(6)), squared(9)));
+            const V apart = hn::Add(hn::Sqrt(squared(0)), hn::Mul(hn::Set(d, radius_m), gradient));
             const auto there = simd::mask_of(d, static_cast<std::uint16_t>(slots >> s), 0);
-            offset2 = hn::Max(offset2, hn::IfThenElseZero(there, a));
-            gradient2 = hn::Max(gradient2, hn::IfThenElseZero(there, g));
+            most = hn::Max(most, hn::IfThenElseZero(there, apart));
         }
-        return std::sqrt(hn::GetLane(hn::MaxOfLanes(d, offset2))) +
-               radius_m * std::sqrt(hn::GetLane(hn::MaxOfLanes(d, gradient2)));
+        return hn::GetLane(hn::MaxOfLanes(d, most));
     }
 
     /// By cell instead, in the order of carriers. A last one holds nothing.
@@ -182,8 +182,10 @@ struct SlotFields {
         for (std::size_t s = 0; s < 28; s += 4)
             for (std::size_t c = 0; c < 12; c += 4) {
                 const Four x = load(c, s), y = load(c + 1, s), z = load(c + 2, s), w = load(c + 3, s);
-                const Four xy0 = __builtin_shufflevector(x, y, 0, 4, 1, 5), xy1 = __builtin_shufflevector(x, y, 2, 6, 3, 7),
-                           zw0 = __builtin_shufflevector(z, w, 0, 4, 1, 5), zw1 = __builtin_shufflevector(z, w, 2, 6, 3, 7);
+                const Four xy0 = __builtin_shufflevector(x, y, 0, 4, 1, 5),
+                           xy1 = __builtin_shufflevector(x, y, 2, 6, 3, 7),
+                           zw0 = __builtin_shufflevector(z, w, 0, 4, 1, 5),
+                           zw1 = __builtin_shufflevector(z, w, 2, 6, 3, 7);
                 const Four cell[4] = {
                     __builtin_shufflevector(xy0, zw0, 0, 1, 4, 5), __builtin_shufflevector(xy0, zw0, 2, 3, 6, 7),
                     __builtin_shufflevector(xy1, zw1, 0, 1, 4, 5), __builtin_shufflevector(xy1, zw1, 2, 3, 6, 7)};
@@ -211,10 +213,10 @@ HWY_INLINE std::uint32_t which_reach(const CapsuleLanes& capsules, const Vec3f& 
     std::uint32_t which = 0;
     for (std::size_t k = 0; k < 16; k += kLanes) {
         const auto load = [&](const std::array<float, 16>& values) HWY_ATTR { return hn::Load(d, values.data() + k); };
-        const V squared = squared_distance(
-            hn::Sub(hn::Set(d, p.x), load(capsules.a[0])), hn::Sub(hn::Set(d, p.y), load(capsules.a[1])),
-            hn::Sub(hn::Set(d, p.z), load(capsules.a[2])), load(capsules.ab[0]), load(capsules.ab[1]),
-            load(capsules.ab[2]), load(capsules.inverse_length2));
+        const V squared = squared_distance(hn::Sub(hn::Set(d, p.x), load(capsules.a[0])),
+                                           hn::Sub(hn::Set(d, p.y), load(capsules.a[1])),
+                                           hn::Sub(hn::Set(d, p.z), load(capsules.a[2])), load(capsules.ab[0]),
+                                           load(capsules.ab[1]), load(capsules.ab[2]), load(capsules.inverse_length2));
         const V most = hn::Max(hn::Add(load(capsules.within), hn::Set(d, further_m)), hn::Zero(d));
         which |= bits_of(hn::Lt(squared, hn::Mul(most, most))) << k;
     }
@@ -240,15 +242,15 @@ HWY_INLINE std::uint64_t reached(const CellView& view, const SlotFields& fields,
         const V x = at(0), y = at(1), z = at(2);
         hn::Mask<D> lanes = hn::FirstN(d, 0);
         for (std::uint32_t rest = which; rest != 0; rest &= rest - 1)
-            lanes = hn::Or(lanes, within(view.capsules->item[static_cast<std::size_t>(__builtin_ctz(rest))], x, y, z,
-                                         further_m));
+            lanes = hn::Or(
+                lanes, within(view.capsules->item[static_cast<std::size_t>(__builtin_ctz(rest))], x, y, z, further_m));
         found |= (here & bits_of(lanes)) << lane;
     }
     return found;
 }
 
-/// sum_n weight[n] field[n] / sum_n weight[n] over the carriers in their order, as blend() of carriers.h. Those that are
-/// not there count with a weight of 0: their number is hard to predict.
+/// sum_n weight[n] field[n] / sum_n weight[n] over the carriers in their order, as blend() of carriers.h. Those that
+/// are not there count with a weight of 0: their number is hard to predict.
 HWY_INLINE void blend_one(const PaddedField* fields, const HexelWeights& table, std::uint32_t carriers, float* out) {
     const D d;
     const hn::RebindToUnsigned<D> du;
@@ -279,7 +281,8 @@ std::uint64_t blend_cell(const CellView& view, const Cell& cell, PaddedField* bl
     const float spread_m = fields.spread(slots, std::sqrt(3.0f) * view.half_m) + kRounding_m;
     const float stretch_m =
         view.half_m * longest_diagonal(fields.own_column(0), fields.own_column(1), fields.own_column(2));
-    const Vec3f centre_m = cell.centre_m + Vec3f(fields.of[0][kOwnSlot], fields.of[1][kOwnSlot], fields.of[2][kOwnSlot]);
+    const Vec3f centre_m =
+        cell.centre_m + Vec3f(fields.of[0][kOwnSlot], fields.of[1][kOwnSlot], fields.of[2][kOwnSlot]);
     const std::uint32_t which = which_reach(*view.lanes, centre_m, spread_m + stretch_m);
     if (which == 0) return 0;
     const std::uint64_t hexels = reached(view, fields, centre_m, which, spread_m, cell.hexels);
@@ -302,8 +305,7 @@ void measure_places(const Capsules& capsules, NearPlaces& places) {
         V beyond = hn::Set(d, 1e9f), nearest = beyond, bare = beyond;
         for (std::size_t k = 0; k < capsules.count; ++k) {
             const CapsuleF& capsule = capsules.item[k];
-            const V distance =
-                hn::Sub(hn::Sqrt(squared_distance(capsule, x, y, z)), hn::Set(d, capsule.radius));
+            const V distance = hn::Sub(hn::Sqrt(squared_distance(capsule, x, y, z)), hn::Set(d, capsule.radius));
             beyond = hn::Min(beyond, hn::Sub(distance, hn::Set(d, capsule.reach)));
             nearest = hn::Min(nearest, distance);
             if (capsule.bare) bare = hn::Min(bare, distance);
@@ -328,8 +330,8 @@ HWY_EXPORT(measure_places);
 
 namespace {
 
-/// One capsule about all that is `further_m` beyond the reach of an instrument's, along the longest of them; false where
-/// it has none. Its reach is within its radius.
+/// One capsule about all that is `further_m` beyond the reach of an instrument's, along the longest of them; false
+/// where it has none. Its reach is within its radius.
 bool bound(const Capsules& capsules, tissue::Instrument instrument, float further_m, CapsuleF& out) {
     const CapsuleF* longest = nullptr;
     for (std::size_t k = 0; k < capsules.count; ++k) {

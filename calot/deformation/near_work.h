@@ -41,8 +41,8 @@ struct NearBlock {
 /// Most carriers with a weight above 0 of a hexel's centre, however many hexels a phyxel has.
 inline constexpr int kMostWeighted = 12;
 
-/// A hexel's centre, which sits at the same place in every phyxel's cell: kernel towards those carriers that have any, in
-/// their order (carriers.h).
+/// A hexel's centre, which sits at the same place in every phyxel's cell: kernel towards those carriers that have any,
+/// in their order (carriers.h).
 struct HexelWeights {
     alignas(64) std::array<float, 16> weight{};
     alignas(64) std::array<std::int32_t, 16> carrier{};
@@ -50,13 +50,13 @@ struct HexelWeights {
 
 struct NearWork {
     std::vector<HexelWeights, AlignedAllocator<HexelWeights>> weights;  ///< [m^3], bit as in Work::occupancy
-    std::array<Array<float>, 3> offset_m;  ///< [64] of the same centres from the cell's
-    std::array<std::array<std::uint8_t, 3>, 64> local{};  ///< coordinates in the cell
-    std::array<std::int64_t, 64> hexel_offset{};          ///< from the cell's first hexel
+    std::array<Array<float>, 3> offset_m;                               ///< [64] of the same centres from the cell's
+    std::array<std::array<std::uint8_t, 3>, 64> local{};                ///< coordinates in the cell
+    std::array<std::int64_t, 64> hexel_offset{};                        ///< from the cell's first hexel
 
     std::vector<NearBlock, AlignedAllocator<NearBlock>> blocks;  ///< cells ascend
-    std::int64_t tick = -1;         ///< of the last search
-    Capsules listed;                ///< where they were when `blocks` were listed
+    std::int64_t tick = -1;                                      ///< of the last search
+    Capsules listed;                                             ///< where they were when `blocks` were listed
 };
 
 }  // namespace calot::deformation

@@ -102,8 +102,10 @@ Vec3 organ_force_N(const anatomy::Shape& shape, const std::vector<tissue::Capsul
 
 // Capsules stand where they are at the end of the tick, tissue where it is at its start.
 StartCapsule::StartCapsule(const tissue::Capsule& end, double dt_s)
-    : capsule(&end), a_m(end.a_m - dt_s * end.velocity_a_m_per_s),
-      ab_m(end.b_m - dt_s * end.velocity_b_m_per_s - a_m), length2_m2(glm::dot(ab_m, ab_m)) {
+    : capsule(&end),
+      a_m(end.a_m - dt_s * end.velocity_a_m_per_s),
+      ab_m(end.b_m - dt_s * end.velocity_b_m_per_s - a_m),
+      length2_m2(glm::dot(ab_m, ab_m)) {
     if (length2_m2 == 0.0) return;
     axis = ab_m / std::sqrt(length2_m2);
     inverse_length2_per_m2 = 1.0 / length2_m2;
