@@ -27,11 +27,11 @@ struct Scene {
         displace(3);
         place(Vec3(0.0));
     }
-    void displace(std::uint64_t seed) {
+    void displace(std::uint64_t seed, const Vec3& drift_m = Vec3(0.0)) {
         Random random(seed);
         body.for_each_phyxel([&](std::int64_t p) {
-            body.set_displacement(p,
-                                  0.3e-3 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+            const Vec3 noise(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+            body.set_displacement(p, drift_m + 0.3e-3 * noise);
         });
         update_gradients(body.model, body.state, body.work);
     }
@@ -100,7 +100,8 @@ TEST(FindNear, ListsOfAFrameMissNothing) {
     std::size_t found = 0;
     for (int tick = 0; tick < 40; ++tick) {
         body.state.tick = tick;
-        scene.displace(static_cast<std::uint64_t>(tick / 2));  // by a millimetre at most
+        // By a millimetre at most, and all of it at 0.6 m/s through the frame.
+        scene.displace(static_cast<std::uint64_t>(tick / 2), Vec3(0.3e-3, 0.0, 0.5e-3) * static_cast<double>(tick % 8));
         // To and fro at 0.3 m/s, then somewhere else at once.
         const double t = 1e-3 * tick;
         scene.place(tick == 21 ? Vec3(-6e-3, 2e-3, 0.0) : Vec3(0.3 * std::fabs(t - 0.02) - 4e-3, 0.1 * t, 0.0));
