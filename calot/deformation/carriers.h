@@ -134,6 +134,39 @@ Carriers find_carriers(const tissue::Model& model, const State& state, const Wor
     return carriers;
 }
 
+/// Where a cell of the neighbourhood comes among carriers: the phyxel itself, cells that links reach, corners.
+inline constexpr std::array<std::uint8_t, kNeighbourhood> kCarrierPlace = [] {
+    std::array<std::uint8_t, kNeighbourhood> place{};
+    std::uint8_t next = 1;
+    for (const bool corners : {false, true})
+        for (int k = 0; k < kNeighbourhood; ++k)
+            if (k != kNeighbourhoodCentre && (k % 3 != 1 && k / 3 % 3 != 1 && k / 9 != 1) == corners)
+                place[static_cast<std::size_t>(k)] = next++;
+    return place;
+}();
+
+/// The carriers of a phyxel that is there, as bits in their order.
+inline std::uint32_t carrier_bits(const tissue::Model& model, const Work& work, std::int64_t phyxel) {
+    const auto& offset = work.neighbour_offset;
+    const std::uint32_t word = work.link_word[static_cast<std::size_t>(phyxel)];
+    // Cells between two corners, or a corner and the centre, move together.
+    std::uint32_t bits = 1u | (word & 0x2u) | (word & 0x38u) >> 1 | (word & 0x80u) >> 2 | (word & 0x1e00u) >> 3 |
+                         (word & 0x3c000u) >> 4 | (word & 0x80000u) >> 5 | (word & 0xe00000u) >> 6 |
+                         (word & 0x2000000u) >> 7;
+    for (const Corner& corner : corners())
+        for (const CornerWay& way : corner.way) {
+            if (((word >> way.via) & 1u) == 0) continue;
+            const std::int64_t middle = phyxel + offset[static_cast<std::size_t>(way.via)];
+            if (((work.link_word[static_cast<std::size_t>(middle)] >> way.onward) & 1u) == 0 &&
+                !(model.phyxel_ghost.test(middle) &&
+                  model.phyxel_ghost.test(middle + offset[static_cast<std::size_t>(way.onward)])))
+                continue;
+            bits |= 1u << kCarrierPlace[static_cast<std::size_t>(corner.cell)];
+            break;
+        }
+    return bits;
+}
+
 /// The displacement fields u_j + G_j (X - X_j) of the carriers, each written as a + G r with r = X - X_owner [m].
 struct CarrierFields {
     static constexpr int kComponents = 12;  ///< a (3), G (9, row-major)
@@ -186,13 +219,15 @@ inline std::array<float, CarrierFields::kComponents> blend(const CarrierFields& 
 }
 
 /// Displacement a + G r.
-inline Vec3f displacement_at(const std::array<float, CarrierFields::kComponents>& f, const Vec3f& r) {
+template <std::size_t N>
+Vec3f displacement_at(const std::array<float, N>& f, const Vec3f& r) {
     return Vec3f(f[0] + (f[3] * r.x + f[4] * r.y + f[5] * r.z), f[1] + (f[6] * r.x + f[7] * r.y + f[8] * r.z),
                  f[2] + (f[9] * r.x + f[10] * r.y + f[11] * r.z));
 }
 
 /// F = I + G, column-major.
-inline Mat3f deformation_gradient_of(const std::array<float, CarrierFields::kComponents>& f) {
+template <std::size_t N>
+Mat3f deformation_gradient_of(const std::array<float, N>& f) {
     return Mat3f(1.0f + f[3], f[6], f[9], f[4], 1.0f + f[7], f[10], f[5], f[8], 1.0f + f[11]);
 }
 

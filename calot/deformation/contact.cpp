@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calot/base/random.h"
 #include "calot/deformation/contact_kernel.h"
 #include "calot/deformation/contact_spread.h"
 #include "calot/deformation/ghosts.h"
@@ -141,9 +142,10 @@ std::int32_t row_of(ContactWork& contact, std::int64_t phyxel) {
 
 /// Calls visit(phyxel, share) for all phyxels that carry a point; what a ghost carries, the phyxels that it mirrors do.
 template <class Visit>
-void for_each_carrier(const Model& model, const Work& work, const LocalShares& local, const Visit& visit) {
-    for_each_share(model.phyxels, local, [&](std::int64_t cell, float share) {
-        if (!model.phyxel_ghost.test(cell)) return visit(cell, share);
+void for_each_carrier(const Work& work, const LocalShares& local, const Visit& visit) {
+    for_each_share(local, [&](std::size_t at, float share) {
+        const std::int64_t cell = local.owner + work.contact.share_offset[at];
+        if (work.contact.row_of[static_cast<std::size_t>(cell)] != kGhostRow) return visit(cell, share);
         const Mirror& mirror = find_mirror(work, cell);
         for (int n = 0; n < mirror.count; ++n)
             visit(mirror.phyxel[static_cast<std::size_t>(n)], -share / static_cast<float>(mirror.count));
@@ -151,13 +153,13 @@ void for_each_carrier(const Model& model, const Work& work, const LocalShares& l
 }
 
 /// Fills rows and lines from the local shares of all points.
-void fill_lines(const Model& model, Work& work) {
+void fill_lines(Work& work) {
     ContactWork& contact = work.contact;
     const std::size_t count = contact.points.size();
     contact.shares.clear();
     for (std::size_t c = 0; c < count; ++c) {
         const auto begin = static_cast<std::int32_t>(contact.shares.size());
-        for_each_carrier(model, work, contact.local[c], [&](std::int64_t phyxel, float share) {
+        for_each_carrier(work, contact.local[c], [&](std::int64_t phyxel, float share) {
             const std::int32_t row = row_of(contact, phyxel);
             std::int32_t& entry = contact.entry_of[static_cast<std::size_t>(row)];
             if (entry < begin) {
@@ -213,6 +215,10 @@ ContactWork make_contact_work(const Model& model) {
     contact.coupling_per_kg.assign(kMaxPoints * kMaxPoints, 0.0f);
     for (auto& velocity : contact.velocity_m_per_s) velocity.assign(kMaxPoints, 0.0f);
     contact.row_of.assign(cells, -1);
+    for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p)
+        if (model.phyxel_ghost.test(p)) contact.row_of[static_cast<std::size_t>(p)] = kGhostRow;
+    for (std::size_t at = 0; at < contact.share_offset.size(); ++at)
+        contact.share_offset[at] = static_cast<std::int32_t>(model.phyxels.offset(share_step(static_cast<int>(at))));
     const auto most =
         static_cast<std::size_t>(std::min<std::int64_t>(model.hexel_initial.count(), tissue::kNearCapacity)) * 2;
     for (auto* list : {&contact.owner, &contact.next, &contact.rank}) list->reserve(most);
@@ -232,9 +238,14 @@ void list_points(const Model& model, const State& state, const tissue::Exchange&
 }
 
 void carry_points(const Model& model, const State& state, Work& work) {
-    for (std::size_t c = 0; c < work.contact.points.size(); ++c)
-        local_shares(model, state, work, work.contact.points[c].hexel, work.contact.local[c]);
-    fill_lines(model, work);
+    // Points of a phyxel come one after another or nearly so.
+    std::array<PhyxelCarriers, 8> kept;
+    for (std::size_t c = 0; c < work.contact.points.size(); ++c) {
+        const std::int64_t hexel = work.contact.points[c].hexel;
+        const auto phyxel = static_cast<std::uint64_t>(model.phyxel_of(model.hexels.coordinates(hexel)));
+        local_shares(model, state, work, hexel, kept[mix64(phyxel) % kept.size()], work.contact.local[c]);
+    }
+    fill_lines(work);
 }
 
 void prepare_contacts(const Model& model, const State& state, const tissue::Exchange& exchange, Work& work) {

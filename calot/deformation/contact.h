@@ -65,7 +65,8 @@ struct ContactPoint {
 /// 2, is at (x + 2) + 8 (y + 2) + 40 (z + 2) (contact_spread.h).
 struct LocalShares {
     std::int64_t owner = -1;  ///< phyxel cell
-    std::array<float, 200> share{};
+    alignas(64) std::array<float, 200> share{};
+    std::array<std::uint64_t, 4> there{};  ///< bits of those that are not 0
 };
 
 /// What a row has of a point.
@@ -74,22 +75,25 @@ struct RowShare {
     float share;
 };
 
+inline constexpr std::int32_t kGhostRow = -2;
+
 /// One tick's points. Arrays of floats are 64-byte aligned and padded with zeros to multiples of 16.
 struct ContactWork {
     std::vector<ContactPoint> points;
-    std::vector<std::int32_t> phyxel;                     ///< [rows] cells
-    std::int32_t stride = 0;                              ///< rows, padded
-    Array<float> psi;                                     ///< [points][stride]
-    Array<float> inverse_mass_per_kg;                     ///< [stride]
-    std::array<Array<float>, 3> row_velocity_m_per_s;     ///< [stride]
-    std::array<Array<float>, 3> row_impulse_Ns;           ///< [stride]
-    Array<float> coupling_per_kg;                         ///< W, [kMaxPoints] per row
-    std::array<Array<float>, 3> velocity_m_per_s;         ///< v_c, [kMaxPoints]
-    Array<std::int32_t> row_of;                           ///< [phyxels.cells] -1 between ticks
-    bool started = false;                                 ///< a substep of this tick was solved
-    std::vector<LocalShares> local;                       ///< [kMaxPoints]
-    std::vector<RowShare> shares;                         ///< of all points in turn, on the way to psi
-    Array<std::int32_t> entry_of;                         ///< [rows] the last of them
+    std::vector<std::int32_t> phyxel;                  ///< [rows] cells
+    std::int32_t stride = 0;                           ///< rows, padded
+    Array<float> psi;                                  ///< [points][stride]
+    Array<float> inverse_mass_per_kg;                  ///< [stride]
+    std::array<Array<float>, 3> row_velocity_m_per_s;  ///< [stride]
+    std::array<Array<float>, 3> row_impulse_Ns;        ///< [stride]
+    Array<float> coupling_per_kg;                      ///< W, [kMaxPoints] per row
+    std::array<Array<float>, 3> velocity_m_per_s;      ///< v_c, [kMaxPoints]
+    Array<std::int32_t> row_of;                        ///< [phyxels.cells] between ticks -1, of ghosts always kGhostRow
+    std::array<std::int32_t, 200> share_offset{};      ///< from a point's phyxel to the cells of LocalShares
+    bool started = false;                              ///< a substep of this tick was solved
+    std::vector<LocalShares, AlignedAllocator<LocalShares>> local;  ///< [kMaxPoints]
+    std::vector<RowShare> shares;                                   ///< of all points in turn, on the way to psi
+    Array<std::int32_t> entry_of;                                   ///< [rows] the last of them
     std::array<Vec3, tissue::kInstruments> impulse_Ns{};  ///< of each instrument on the tissue since the tick began
     std::vector<std::int32_t> owner, next, rank, kept;    ///< scratch of choosing among many, [contacts]
 };

@@ -1,26 +1,10 @@
 #include "calot/deformation/contact_spread.h"
 
 #include "calot/deformation/carriers.h"
-#include "calot/deformation/links.h"
-#include "calot/deformation/occupancy.h"
 
 namespace calot::deformation {
 
 namespace {
-
-/// Link weights of three neighbours in a row of x, where the bits of a link word say that they live; a fourth lane is
-/// 0. The row beside the carrier has edges, faces, edges (1 f 1), the carrier's own two faces (f . f), a diagonal one a
-/// single edge (. 1 .).
-struct RowWeights {
-    std::array<std::array<std::array<float, 4>, 8>, 3> of;  ///< [|dy| + |dz|][bits]
-    RowWeights() : of{} {
-        constexpr float kFace = static_cast<float>(kFaceWeight), kEdge = static_cast<float>(kEdgeWeight);
-        constexpr float kWeight[3][3] = {{kFace, 0.0f, kFace}, {kEdge, kFace, kEdge}, {0.0f, kEdge, 0.0f}};
-        for (std::size_t kind = 0; kind < 3; ++kind)
-            for (std::size_t bits = 0; bits < 8; ++bits)
-                for (std::size_t x = 0; x < 3; ++x) of[kind][bits][x] = (bits >> x) & 1u ? kWeight[kind][x] : 0.0f;
-    }
-};
 
 Mat3f moment_inverse(const Work& work, std::size_t i) {
     std::array<float, 6> a;
@@ -28,54 +12,56 @@ Mat3f moment_inverse(const Work& work, std::size_t i) {
     return Mat3f(a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5]);
 }
 
-/// Adds one carrier j: phi_j (u_j + G_j (X - X_j)), G_j (X - X_j) = sum_l w u_jl (X_jl . A_j^-1 (X - X_j)).
-/// `lever` = phi_j s A_j^-1 (X - X_j), `at` the carrier's place in the local cells.
-void add_carrier(std::uint32_t links, const Vec3f& lever, float phi, float* at) {
-    static const RowWeights weights;
-    constexpr std::array<float, 4> kStep{-1.0f, 0.0f, 1.0f, 0.0f};
-    std::array<float, 4> total{};
-    for (int z = -1; z <= 1; ++z)
-        for (int y = -1; y <= 1; ++y, links >>= 3) {
-            const std::uint32_t bits = links & 7u;
-            if (bits == 0) continue;
-            const auto kind = static_cast<std::size_t>((y & 1) + (z & 1));
-            const std::array<float, 4>& w = weights.of[kind][bits];
-            const float across = lever.y * static_cast<float>(y) + lever.z * static_cast<float>(z);
-            float* row = at + 8 * y + 40 * z - 1;
-            for (std::size_t x = 0; x < 4; ++x) {
-                const float share = w[x] * (across + lever.x * kStep[x]);
-                row[x] += share;
-                total[x] += share;
-            }
-        }
-    *at += phi - ((total[0] + total[1]) + total[2]);
+void list_carriers(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t phyxel,
+                   PhyxelCarriers& out) {
+    const auto spacing = static_cast<float>(model.phyxels.spacing_m);
+    const Carriers carriers = find_carriers(model, state, work, phyxel);
+    out.phyxel = phyxel;
+    out.count = static_cast<std::size_t>(carriers.count);
+    for (std::size_t n = 0; n < out.count; ++n) {
+        const auto cell = static_cast<std::size_t>(carriers.cell[n]), at = static_cast<std::size_t>(carriers.phyxel[n]);
+        const Int3 step = neighbour_links()[cell].step;
+        PhyxelCarriers::Carrier& carrier = out.carrier[n];
+        carrier.moment_inverse = moment_inverse(work, at);
+        carrier.step_m = spacing * Vec3f(step);
+        carrier.cell = static_cast<std::uint32_t>(cell);
+        carrier.links = work.link_word[at];
+        carrier.first = static_cast<std::uint32_t>(step.x + 1);
+        carrier.at = static_cast<std::uint32_t>(8 * (step.y + 2) + 40 * (step.z + 2));
+    }
 }
 
 }  // namespace
 
 void local_shares(const tissue::Model& model, const tissue::State& state, const Work& work, std::int64_t hexel,
-                  LocalShares& out) {
+                  PhyxelCarriers& carriers, LocalShares& out) {
     const int m = model.hexels_per_edge;
-    const Int3 at = model.hexels.coordinates(hexel), local = at % m, cell = at / m;
+    const Int3 at = model.hexels.coordinates(hexel), cell = at / m, local = at - cell * m;
     out.owner = model.phyxels.index(cell);
-    out.share.fill(0.0f);
-    const Carriers carriers = find_carriers(model, state, work, out.owner);
-    if (carriers.count == 0) return;
+    if (carriers.phyxel != out.owner) list_carriers(model, state, work, out.owner, carriers);
     const float* table = work.hexel_weight.data() + kNeighbourhood * (local.x + m * (local.y + m * local.z));
-    std::array<float, kNeighbourhood> phi;
+    std::array<CarrierShare, kNeighbourhood> parts;
+    std::size_t count = 0;
     float sum = 0.0f;
-    for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) sum += phi[n] = table[carriers.cell[n]];
+    for (std::size_t n = 0; n < carriers.count; ++n) {
+        const float phi = table[carriers.carrier[n].cell];
+        if (phi == 0.0f) continue;
+        sum += phi;
+        parts[count].phi = phi;
+        parts[count++].at = static_cast<std::uint32_t>(n);
+    }
     const auto spacing = static_cast<float>(model.phyxels.spacing_m);
     const Vec3f r = Vec3f(model.hexels.centre_m(at) - model.phyxels.centre_m(cell));
-    for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) {
-        if (phi[n] == 0.0f) continue;
-        const Int3 step = neighbour_links()[static_cast<std::size_t>(carriers.cell[n])].step;
-        const auto carrier = static_cast<std::size_t>(carriers.phyxel[n]);
-        const float share = phi[n] / sum;
-        const Vec3f lever = (share * spacing) * (moment_inverse(work, carrier) * (r - spacing * Vec3f(step)));
-        add_carrier(work.link_word[carrier], lever, share,
-                    out.share.data() + (step.x + 2) + 8 * (step.y + 2) + 40 * (step.z + 2));
+    for (std::size_t n = 0; n < count; ++n) {
+        CarrierShare& part = parts[n];
+        const PhyxelCarriers::Carrier& carrier = carriers.carrier[part.at];
+        part.phi /= sum;
+        part.lever = (part.phi * spacing) * (carrier.moment_inverse * (r - carrier.step_m));
+        part.links = carrier.links;
+        part.first = carrier.first;
+        part.at = carrier.at;
     }
+    add_carriers(parts.data(), count, out);
 }
 
 }  // namespace calot::deformation

@@ -1,15 +1,18 @@
 // The surface hexels near the instrument, in the world.
 //
-// Phyxels first: those whose moved centre lies near a capsule. Then their surface hexels, by words: a hexel is inside
-// where all six shifted neighbours are filled. The centres of hexels sit at the same m^3 places in every cell, so
-// their kernel values are a table (Work::hexel_weight), and only which carriers live differs.
+// Phyxels first: those whose moved centre lies near a capsule, looked for among those that the frame's list holds. Then
+// their surface hexels, by words: a hexel is inside where all six shifted neighbours are filled. The centres of hexels
+// sit at the same m^3 places in every cell, so their kernel values are a table (NearWork), and only which carriers live
+// differs.
 //
 // Blending is what costs, so most is ruled out before: a blend lies within the carriers' fields, and these differ from
 // the owner's own by no more than a bound that is the same for the whole cell.
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "calot/deformation/carriers.h"
 #include "calot/deformation/embedding.h"
@@ -20,12 +23,9 @@ namespace calot::deformation {
 
 namespace {
 
-float distance_to_surface(const CapsuleF& capsule, const Vec3f& p) {
-    const Vec3f ap = p - capsule.a;
-    const float t = std::min(1.0f, std::max(0.0f, glm::dot(ap, capsule.ab) * capsule.inverse_length2));
-    const Vec3f d = ap - t * capsule.ab;
-    return std::sqrt(glm::dot(d, d)) - capsule.radius;
-}
+/// How far instruments and tissue may move towards each other before a frame's phyxels are listed anew: instruments are
+/// asked, tissue is taken to be slower than 0.75 m/s.
+constexpr float kInstrumentMargin_m = 2e-3f, kTissueMargin_m = 6e-3f;
 
 }  // namespace
 
@@ -39,37 +39,9 @@ Capsules::Capsules(const std::vector<tissue::Capsule>& capsules, const NearReach
                          length2 > 0.0f ? 1.0f / length2 : 0.0f,
                          static_cast<float>(c.radius_m),
                          static_cast<float>(reach.of(c)),
-                         c.bare};
+                         c.bare,
+                         c.instrument};
     }
-}
-
-float Capsules::distance(const Vec3f& p) const {
-    float nearest = 1e9f;
-    for (std::size_t k = 0; k < count; ++k) nearest = std::min(nearest, distance_to_surface(item[k], p));
-    return nearest;
-}
-
-float Capsules::beyond_reach(const Vec3f& p, std::uint32_t which) const {
-    float least = 1e9f;
-    for (std::uint32_t rest = which; rest != 0; rest &= rest - 1) {
-        const CapsuleF& capsule = item[static_cast<std::size_t>(__builtin_ctz(rest))];
-        least = std::min(least, distance_to_surface(capsule, p) - capsule.reach);
-    }
-    return least;
-}
-
-std::uint32_t Capsules::within(const Vec3f& p, float further_m) const {
-    std::uint32_t which = 0;
-    for (std::size_t k = 0; k < count; ++k)
-        which |= (distance_to_surface(item[k], p) - item[k].reach <= further_m ? 1u : 0u) << k;
-    return which;
-}
-
-float Capsules::bare_distance(const Vec3f& p) const {
-    float nearest = 1e9f;
-    for (std::size_t k = 0; k < count; ++k)
-        if (item[k].bare) nearest = std::min(nearest, distance_to_surface(item[k], p));
-    return nearest;
 }
 
 namespace {
@@ -91,15 +63,28 @@ std::uint64_t surface_hexels(const tissue::Model& model, const Work& work, const
     return own & ~inside;
 }
 
+/// kRowOutward with a 0 behind.
+constexpr auto kPaddedOutward = [] {
+    std::array<std::array<std::array<float, 4>, 8>, 9> outward{};
+    for (std::size_t row = 0; row < 9; ++row)
+        for (std::size_t bits = 0; bits < 8; ++bits)
+            for (std::size_t axis = 0; axis < 3; ++axis) outward[row][bits][axis] = kRowOutward[row][bits][axis];
+    return outward;
+}();
+
 /// Away from the tissue at rest: against the sum of the directions to the 26 neighbours that are filled. 0 where they
 /// balance, as in a sheet one hexel thick.
-Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const OutwardRows& rows, std::int64_t hexel) {
-    Vec3f sum(0.0f);
+Vec3f rest_outward(const tissue::Model& model, const tissue::State& state, const NeighbourRows& rows,
+                   std::int64_t hexel) {
+    // Four numbers at a time; the fourth is not used.
+    Four sum{};
     for (std::size_t row = 0; row < rows.offset.size(); ++row) {
         const std::int64_t cell = hexel + rows.offset[row];
-        const auto& row_outward =
-            kRowOutward[row][(state.hexel_present.bits32(cell) | model.hexel_held.bits32(cell)) & 7u];
-        sum += Vec3f(row_outward[0], row_outward[1], row_outward[2]);
+        Four towards;
+        std::memcpy(&towards,
+                    kPaddedOutward[row][(state.hexel_present.bits32(cell) | model.hexel_held.bits32(cell)) & 7u].data(),
+                    sizeof(towards));
+        sum += towards;
     }
     Vec3f outward;
     for (int k = 0; k < 3; ++k) outward[rows.axis[k]] = sum[k];
@@ -132,94 +117,178 @@ void keep(std::vector<tissue::NearHexel>& near, const tissue::NearHexel& item) {
     std::push_heap(near.begin(), near.end(), nearer);
 }
 
-/// How far apart the displacements of any carrier and of the first can be, within `radius_m` of the phyxel's centre.
-float bound_spread(const CarrierFields& fields, int count, float radius_m) {
-    const FieldFours own = fours(fields.field[0]);
-    float offset2 = 0.0f, gradient2 = 0.0f;  // the greatest
-    for (int n = 1; n < count; ++n) {
-        FieldFours d = fours(fields.field[static_cast<std::size_t>(n)]);
-        for (std::size_t c = 0; c < d.size(); ++c) {
-            d[c] -= own[c];
-            d[c] *= d[c];
+/// What a tick's search goes by.
+struct Search {
+    const tissue::Model& model;
+    const tissue::State& state;
+    tissue::Exchange& exchange;
+    const Work& work;
+    const Capsules capsules;
+    const CapsuleLanes lanes;
+    const OccupancyShifts shifts;
+    const NeighbourRows phyxel_rows, hexel_rows;
+    CellView view;
+    NearPlaces places;
+    // Of each place
+    std::array<PaddedField, NearPlaces::kCapacity> field;
+    std::array<Vec3f, NearPlaces::kCapacity> rest_m;
+    std::array<std::int64_t, NearPlaces::kCapacity> hexel;
+
+    Search(const tissue::Model& model_, const tissue::State& state_, tissue::Exchange& exchange_, const Work& work_,
+           const NearReach& reach)
+        : model(model_),
+          state(state_),
+          exchange(exchange_),
+          work(work_),
+          capsules(exchange_.capsules, reach),
+          lanes(capsules),
+          shifts(model_.hexels_per_edge),
+          phyxel_rows(model_.phyxels),
+          hexel_rows(model_.hexels) {
+        for (std::size_t r = 0; r < 3; ++r) view.field[r] = state.displacement_m[r].data();
+        for (std::size_t e = 0; e < 9; ++e) view.field[3 + e] = work.gradient[e].data();
+        view.row = phyxel_rows.offset;
+        view.step_m = {};
+        const auto spacing_m = static_cast<float>(model.phyxels.spacing_m);
+        for (std::size_t slot = 0; slot < kNeighbourhood; ++slot) {
+            const Int3 step = phyxel_rows.step(static_cast<int>(slot));
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                view.step_m[axis][slot] = spacing_m * static_cast<float>(step[static_cast<int>(axis)]);
+            view.place[slot] = kCarrierPlace[static_cast<std::size_t>(neighbour_index(step))];
         }
-        const Four rest = d[1] + d[2];
-        offset2 = std::max(offset2, d[0][0] + d[0][1] + d[0][2]);
-        gradient2 = std::max(gradient2, (d[0][3] + rest[0]) + (rest[1] + (rest[2] + rest[3])));
+        view.place[kNeighbourhood] = kNeighbourhood;
+        view.tables = &work.near;
+        view.capsules = &capsules;
+        view.lanes = &lanes;
+        view.half_m = static_cast<float>(0.5 * model.hexels.spacing_m) * static_cast<float>(shifts.m - 1);
     }
-    return std::sqrt(offset2) + radius_m * std::sqrt(gradient2);
+
+    /// The surface hexels of one phyxel that may be within reach.
+    void add_hexels(std::int64_t phyxel) {
+        const auto p = static_cast<std::size_t>(phyxel);
+        Cell cell;
+        cell.hexels = surface_hexels(model, work, shifts, phyxel);
+        if (cell.hexels == 0) return;
+        if (places.count + 64 > NearPlaces::kCapacity) keep_near();
+        cell.phyxel = phyxel;
+        cell.centre_m = Vec3f(work.rest_m[0][p], work.rest_m[1][p], work.rest_m[2][p]);
+        cell.carriers = carrier_bits(model, work, phyxel);
+        const std::uint64_t found = blend_near(view, cell, field.data() + places.count);
+        if (found == 0) return;
+        const int m = shifts.m;
+        const Int3 first = model.phyxels.coordinates(phyxel) * m;
+        const std::int64_t first_hexel = model.hexels.index(first);
+        std::array<std::array<float, 4>, 3> along_m;  // rest positions of hexels along the axes
+        for (int c = 0; c < m; ++c) {
+            const Vec3f centre_m(model.hexels.centre_m(first + c));
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                along_m[axis][static_cast<std::size_t>(c)] = centre_m[static_cast<int>(axis)];
+        }
+        for (std::uint64_t rest = found; rest != 0; rest &= rest - 1) {
+            const auto bit = static_cast<std::size_t>(__builtin_ctzll(rest));
+            const std::array<std::uint8_t, 3>& at = work.near.local[bit];
+            const std::size_t k = places.count++;
+            hexel[k] = first_hexel + work.near.hexel_offset[bit];
+            rest_m[k] = Vec3f(along_m[0][at[0]], along_m[1][at[1]], along_m[2][at[2]]);
+            const Vec3f world_m = rest_m[k] + displacement_at(field[k], rest_m[k] - cell.centre_m);
+            for (std::size_t axis = 0; axis < 3; ++axis) places.world_m[axis][k] = world_m[static_cast<int>(axis)];
+        }
+    }
+
+    /// Keeps those places that are within reach.
+    void keep_near() {
+        measure(capsules, places);
+        const auto half_hexel_m = static_cast<float>(0.5 * model.hexels.spacing_m);
+        for (std::size_t k = 0; k < places.count; ++k) {
+            if (places.beyond_m[k] > 0.0f) continue;
+            tissue::NearHexel item;
+            item.hexel = hexel[k];
+            item.rest_m = rest_m[k];
+            item.world_m = Vec3f(places.world_m[0][k], places.world_m[1][k], places.world_m[2][k]);
+            item.distance_m = places.distance_m[k];
+            item.bare_gap_m = places.bare_m[k] - half_hexel_m;
+            item.outward =
+                turn_normal(deformation_gradient_of(field[k]), rest_outward(model, state, hexel_rows, item.hexel));
+            keep(exchange.near, item);
+        }
+        places.count = 0;
+    }
+};
+
+/// By how much the ends of capsules and their reach differ from those listed, at most.
+float moved_since(const Capsules& listed, const Capsules& now) {
+    float most = 0.0f;
+    for (std::size_t k = 0; k < now.count; ++k) {
+        const CapsuleF &x = listed.item[k], &y = now.item[k];
+        const Vec3f a = y.a - x.a, b = a + (y.ab - x.ab);
+        const float wider = (y.radius + y.reach) - (x.radius + x.reach);
+        most = std::max(most, std::sqrt(std::max(glm::dot(a, a), glm::dot(b, b))) + std::max(0.0f, wider));
+    }
+    return most;
 }
 
-/// Half the longest diagonal of a cube of half edge `half_m` after the first carrier's deformation.
-float bound_stretch(const CarrierFields& fields, float half_m) {
-    const Mat3f F = half_m * deformation_gradient_of(fields.field[0]);
-    const Vec3f a = F[0] + F[1], b = F[0] - F[1];
-    return std::max(std::max(glm::length(a + F[2]), glm::length(a - F[2])),
-                    std::max(glm::length(b + F[2]), glm::length(b - F[2])));
-}
-
-/// Embeds the surface hexels of one phyxel and keeps those within reach.
-void add_hexels(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, const Work& work,
-                const OccupancyShifts& shifts, const OutwardRows& rows, const Capsules& capsules, std::int64_t phyxel,
-                const Int3& c) {
-    const std::uint64_t surface = surface_hexels(model, work, shifts, phyxel);
-    if (surface == 0) return;
-    const Carriers carriers = find_carriers(model, state, work, phyxel);
-    if (carriers.count == 0) return;
-    CarrierFields fields;
-    fields.gather(model, state, work, carriers);
-    const Vec3f centre_m(model.phyxels.centre_m(c));
-    const auto half_hexel_m = static_cast<float>(0.5 * model.hexels.spacing_m);
-    const float half_m = half_hexel_m * static_cast<float>(shifts.m - 1);  // of the cube of the hexels' centres
-    const float spread_m = bound_spread(fields, carriers.count, std::sqrt(3.0f) * half_m);
-    const std::uint32_t which = capsules.within(centre_m + displacement_at(fields.field[0], Vec3f(0.0f)),
-                                                spread_m + bound_stretch(fields, half_m));
-    if (which == 0) return;
-
-    for (std::uint64_t rest = surface; rest != 0; rest &= rest - 1) {
-        const int bit = __builtin_ctzll(rest);
-        const Int3 cell = c * shifts.m + hexel_of_bit(shifts.m, bit);
-        tissue::NearHexel item;
-        item.rest_m = Vec3f(model.hexels.centre_m(cell));
-        const Vec3f r = item.rest_m - centre_m;
-        if (capsules.beyond_reach(item.rest_m + displacement_at(fields.field[0], r), which) > spread_m) continue;
-
-        const float* table = work.hexel_weight.data() + kNeighbourhood * bit;
-        std::array<float, kNeighbourhood> weight;
-        for (std::size_t n = 0; n < static_cast<std::size_t>(carriers.count); ++n) weight[n] = table[carriers.cell[n]];
-        const auto f = blend(fields, carriers.count, weight.data());
-        item.world_m = item.rest_m + displacement_at(f, r);
-        if (capsules.beyond_reach(item.world_m, which) > 0.0f) continue;
-        item.distance_m = capsules.distance(item.world_m);
-        item.hexel = model.hexels.index(cell);
-        item.bare_gap_m = capsules.bare_distance(item.world_m) - half_hexel_m;
-        item.outward = turn_normal(deformation_gradient_of(f), rest_outward(model, state, rows, item.hexel));
-        keep(exchange.near, item);
-    }
+/// Lists the phyxels that may be near in this frame, unless that was done.
+void list_phyxels(const tissue::State& state, const Capsules& capsules, const PlaceView& places, float further_m,
+                  Work& work) {
+    NearWork& near = work.near;
+    const bool same_frame =
+        near.tick >= 0 && state.tick == near.tick + 1 && state.tick % tissue::Model::frame_ticks != 0;
+    near.tick = state.tick;
+    if (same_frame && near.listed.count == capsules.count && moved_since(near.listed, capsules) <= kInstrumentMargin_m)
+        return;
+    near.listed = capsules;
+    list_near_phyxels(places, work.groups, capsules, further_m + kInstrumentMargin_m + kTissueMargin_m, near);
 }
 
 }  // namespace
+
+NearWork make_near_work(const tissue::Model& model, const Work& work) {
+    NearWork near;
+    const int m = model.hexels_per_edge;
+    near.weights.resize(static_cast<std::size_t>(model.hexels_per_phyxel()));
+    for (auto& axis : near.offset_m) axis.assign(64, 0.0f);
+    std::array<std::size_t, kNeighbourhood> cell{};  // of a carrier
+    for (std::size_t k = 0; k < kNeighbourhood; ++k) cell[kCarrierPlace[k]] = k;
+    for (std::size_t bit = 0; bit < near.weights.size(); ++bit) {
+        std::size_t count = 0;
+        for (std::size_t n = 0; n < kNeighbourhood; ++n) {
+            const float weight = work.hexel_weight[kNeighbourhood * bit + cell[n]];
+            if (weight == 0.0f) continue;
+            assert(count < kMostWeighted);
+            near.weights[bit].weight[count] = weight;
+            near.weights[bit].carrier[count++] = static_cast<std::int32_t>(n);
+        }
+        const Int3 local = hexel_of_bit(m, static_cast<int>(bit));
+        near.hexel_offset[bit] = model.hexels.offset(local);
+        for (int axis = 0; axis < 3; ++axis)
+            near.local[bit][static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(local[axis]);
+        const Vec3 r = (Vec3(local) - 0.5 * (m - 1)) * model.hexels.spacing_m;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            near.offset_m[axis][bit] = static_cast<float>(r[static_cast<int>(axis)]);
+    }
+    near.blocks.reserve(static_cast<std::size_t>(model.phyxel_initial.count() / 16 + 1));
+    return near;
+}
 
 void find_near(const tissue::Model& model, const tissue::State& state, tissue::Exchange& exchange, Work& work,
                const NearReach& reach) {
     exchange.near.clear();
     if (exchange.capsules.empty()) return;
-    const OccupancyShifts shifts(model.hexels_per_edge);
-    const Capsules capsules(exchange.capsules, reach);
-    const OutwardRows rows(model.hexels);
+    Search search(model, state, exchange, work, reach);
     PlaceView places;
     for (std::size_t r = 0; r < 3; ++r) {
         places.rest_m[r] = work.rest_m[r].data();
         places.displacement_m[r] = state.displacement_m[r].data();
     }
-    find_near_phyxels(places, work.groups, capsules, static_cast<float>(kPhyxelMargin * model.phyxels.spacing_m),
-                      work.near_lanes);
-    for (std::size_t g = 0; g < work.groups.size(); ++g) {
-        const Group& group = work.groups[g];
-        for (std::uint32_t rest = group.present & work.near_lanes[g]; rest != 0; rest &= rest - 1) {
-            const std::int64_t phyxel = group.first + __builtin_ctz(rest);
-            add_hexels(model, state, exchange, work, shifts, rows, capsules, phyxel, model.phyxels.coordinates(phyxel));
+    const auto further_m = static_cast<float>(kPhyxelMargin * model.phyxels.spacing_m);
+    list_phyxels(state, search.capsules, places, further_m, work);
+    find_near_phyxels(places, search.capsules, further_m, work.near);
+    for (const NearBlock& block : work.near.blocks)
+        for (std::uint32_t rest = block.near; rest != 0; rest &= rest - 1) {
+            const std::int64_t phyxel = block.cell[static_cast<std::size_t>(__builtin_ctz(rest))];
+            if (state.phyxel_present.test(phyxel)) search.add_hexels(phyxel);
         }
-    }
+    search.keep_near();
     std::sort(exchange.near.begin(), exchange.near.end(),
               [](const tissue::NearHexel& a, const tissue::NearHexel& b) { return a.hexel < b.hexel; });
 }

@@ -2,6 +2,7 @@
 
 #include "calot/deformation/integrate.h"
 #include "calot/deformation/kernel.h"
+#include "calot/deformation/near_kernel.h"
 #include "calot/deformation/rest.h"
 #include "calot/deformation/stable_mass.h"
 #include "calot/deformation/topology.h"
@@ -29,7 +30,7 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     work.groups = make_groups(model, state);
     work.strained.assign(work.groups.size(), 0);
     work.touched_groups.reserve(work.groups.size());
-    work.near_lanes.reserve(work.groups.size());
+    work.near = make_near_work(model, work);
     for (std::size_t r = 0; r < 3; ++r) {
         work.rest_m[r].assign(cells, 0.0f);
         for (std::int64_t p = model.phyxels.first; p < model.phyxels.last; ++p)

@@ -7,6 +7,7 @@
 
 #include "calot/base/array.h"
 #include "calot/deformation/contact.h"
+#include "calot/deformation/near_work.h"
 #include "calot/tissue/exchange.h"
 #include "calot/tissue/state.h"
 
@@ -89,7 +90,7 @@ struct Work {
     std::vector<Group> groups;                 ///< hold all phyxels and ghosts, do not overlap, ascending
     std::vector<std::uint8_t> strained;        ///< [groups] has an overstretched or stiffened cell
     std::vector<std::int32_t> touched_groups;  ///< scratch
-    std::vector<std::uint16_t> near_lanes;     ///< [groups] scratch of find_near
+    NearWork near;                             ///< tables and lists of find_near
     std::array<Array<float>, 3> rest_m;        ///< [phyxels.cells] centres at rest
     ContactWork contact;                       ///< one tick's contact points
 

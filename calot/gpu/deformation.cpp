@@ -88,7 +88,7 @@ Deformation::Deformation(std::shared_ptr<Device> device, const Model& model, Arr
     words_ = DeviceArray<std::uint32_t>(*device_, WORD_PLANES * cells);
     phyxel_centres_ = centres_of(*device_, model.phyxels);
     hexel_centres_ = centres_of(*device_, model.hexels);
-    const deformation::OutwardRows rows(model.hexels);
+    const deformation::NeighbourRows rows(model.hexels);
     std::vector<float> outwards;
     for (const auto& row : deformation::kRowOutward)
         for (const auto& sum : row) {

@@ -45,7 +45,7 @@ GpuNear Deformation::near_parameters(const deformation::Capsules& capsules) cons
         k.low[r] = low[r];
         k.high[r] = high[r];
     }
-    const deformation::OutwardRows rows(model_->hexels);
+    const deformation::NeighbourRows rows(model_->hexels);
     for (std::size_t row = 0; row < rows.offset.size(); ++row)
         k.row_offset[row] = static_cast<std::int32_t>(rows.offset[row]);
     k.active = static_cast<std::int32_t>(active_.size());

@@ -1,6 +1,7 @@
 #include "calot/instruments/contact.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace calot::instruments {
@@ -17,6 +18,8 @@ constexpr double kLeastSine2 = 0.05;
 /// Points along a capsule at which an organ's distance is taken are at most this far apart; the shaft's are further.
 constexpr double kWireSample_m = 2.5e-3;
 constexpr int kMostSamples = 12;
+/// More than the instruments have.
+constexpr std::size_t kMostCapsules = 16;
 
 /// How far along `direction` (unit) a place `away` from the axis is from leaving a cylinder about `axis` (unit), or a
 /// sphere where `axis` is 0. Requires the place to lie inside.
@@ -97,11 +100,30 @@ Vec3 organ_force_N(const anatomy::Shape& shape, const std::vector<tissue::Capsul
 
 }  // namespace
 
-Touch touch(const tissue::Capsule& capsule, double dt_s, const tissue::NearHexel& hexel, double point_radius_m) {
-    // Capsules stand where they are at the end of the tick, tissue where it is at its start.
-    const Vec3 a = capsule.a_m - dt_s * capsule.velocity_a_m_per_s, b = capsule.b_m - dt_s * capsule.velocity_b_m_per_s;
-    const Vec3 p(hexel.world_m), ab = b - a;
-    const double length2 = glm::dot(ab, ab), reach_m = capsule.radius_m + point_radius_m;
+// Capsules stand where they are at the end of the tick, tissue where it is at its start.
+StartCapsule::StartCapsule(const tissue::Capsule& end, double dt_s)
+    : capsule(&end),
+      a_m(end.a_m - dt_s * end.velocity_a_m_per_s),
+      ab_m(end.b_m - dt_s * end.velocity_b_m_per_s - a_m),
+      length2_m2(glm::dot(ab_m, ab_m)) {
+    if (length2_m2 == 0.0) return;
+    axis = ab_m / std::sqrt(length2_m2);
+    inverse_length2_per_m2 = 1.0 / length2_m2;
+}
+
+bool StartCapsule::further_than(const Vec3& p, double distance_m) const {
+    constexpr double kRounding_m = 1e-7;
+    const Vec3 ap = p - a_m;
+    const double t = std::clamp(glm::dot(ap, ab_m) * inverse_length2_per_m2, 0.0, 1.0);
+    const Vec3 away = ap - t * ab_m;
+    return glm::dot(away, away) > (distance_m + kRounding_m) * (distance_m + kRounding_m);
+}
+
+Touch touch(const StartCapsule& start, const tissue::NearHexel& hexel, double point_radius_m) {
+    const tissue::Capsule& capsule = *start.capsule;
+    const Vec3 &a = start.a_m, &ab = start.ab_m;
+    const Vec3 p(hexel.world_m);
+    const double length2 = start.length2_m2, reach_m = capsule.radius_m + point_radius_m;
     const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, ab) / length2, 0.0, 1.0) : 0.0;
     const Vec3 away = p - (a + t * ab);
     const double distance_m = glm::length(away);
@@ -114,7 +136,7 @@ Touch touch(const tissue::Capsule& capsule, double dt_s, const tissue::NearHexel
     if (gap_m < 0.0 && inward != Vec3(0.0) && !backside) {
         normal = inward;
         const bool on_side = t > 0.0 && t < 1.0;
-        gap_m = -way_out_m(away, inward, on_side ? ab / std::sqrt(length2) : Vec3(0.0), reach_m);
+        gap_m = -way_out_m(away, inward, on_side ? start.axis : Vec3(0.0), reach_m);
     }
     Touch result;
     result.normal = Vec3f(normal);
@@ -133,14 +155,19 @@ void find_contacts(const tissue::Model& model, const tissue::State&, tissue::Exc
     const double point_radius_m = 0.5 * model.hexels.spacing_m;
     const auto margin = static_cast<float>(margin_m(model, exchange)),
                reach_m = static_cast<float>(contact_reach_m(model, exchange));
+    std::array<StartCapsule, kMostCapsules> solid;
+    std::size_t capsules = 0;
+    for (const tissue::Capsule& capsule : exchange.capsules)
+        if (capsule.solid && capsules < solid.size()) solid[capsules++] = {capsule, model.tick_s};
     for (std::size_t k = 0; k < exchange.near.size(); ++k) {
         const tissue::NearHexel& hexel = exchange.near[k];
         if (hexel.distance_m > reach_m) continue;
         Touch first, second;
         bool has_first = false, has_second = false;
-        for (const tissue::Capsule& capsule : exchange.capsules) {
-            if (!capsule.solid) continue;
-            const Touch found = touch(capsule, model.tick_s, hexel, point_radius_m);
+        const Vec3 world_m(hexel.world_m);
+        for (std::size_t c = 0; c < capsules; ++c) {
+            if (solid[c].further_than(world_m, solid[c].capsule->radius_m + point_radius_m + double{margin})) continue;
+            const Touch found = touch(solid[c], hexel, point_radius_m);
             if (found.gap_m > margin) continue;
             if (!has_first || found.gap_m < first.gap_m) {
                 second = first;

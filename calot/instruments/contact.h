@@ -44,6 +44,19 @@ struct Touch {
     Vec3f tool_velocity_m_per_s{0.0f};
     tissue::Instrument instrument = tissue::Instrument::hook;
 };
-Touch touch(const tissue::Capsule& capsule, double dt_s, const tissue::NearHexel& hexel, double point_radius_m);
+
+/// A capsule at the start of the tick, for many points.
+struct StartCapsule {
+    const tissue::Capsule* capsule = nullptr;
+    Vec3 a_m{0.0}, ab_m{0.0};
+    Vec3 axis{0.0};  ///< unit; 0 where a capsule is a ball
+    double length2_m2 = 0.0, inverse_length2_per_m2 = 0.0;
+
+    StartCapsule() = default;
+    StartCapsule(const tissue::Capsule& end, double dt_s);
+    /// Whether a place is certainly further than this from the capsule's axis; cheap.
+    bool further_than(const Vec3& p, double distance_m) const;
+};
+Touch touch(const StartCapsule& capsule, const tissue::NearHexel& hexel, double point_radius_m);
 
 }  // namespace calot::instruments

@@ -47,10 +47,10 @@ struct Scene {
 }  // namespace
 
 TEST(Touch, GapAndNormalOfAPointOutside) {
-    const Touch side = touch(wire(kLeft, kRight), kDt_s, hexel_at(Vec3(0, 0, -1e-3), Vec3(0, 0, 1)), kPoint_m);
+    const Touch side = touch({wire(kLeft, kRight), kDt_s}, hexel_at(Vec3(0, 0, -1e-3), Vec3(0, 0, 1)), kPoint_m);
     EXPECT_LT(glm::length(side.normal - Vec3f(0, 0, -1)), 1e-6f);
     EXPECT_NEAR(side.gap_m, 1e-3 - kWire_m - kPoint_m, 1e-9);
-    const Touch end = touch(wire(kLeft, kRight), kDt_s, hexel_at(Vec3(3e-3, 0, 0), Vec3(-1, 0, 0)), kPoint_m);
+    const Touch end = touch({wire(kLeft, kRight), kDt_s}, hexel_at(Vec3(3e-3, 0, 0), Vec3(-1, 0, 0)), kPoint_m);
     EXPECT_LT(glm::length(end.normal - Vec3f(1, 0, 0)), 1e-6f);
     EXPECT_NEAR(end.gap_m, 2e-3 - kWire_m - kPoint_m, 1e-9);
 }
@@ -59,7 +59,7 @@ TEST(Touch, GapAndNormalOfAPointOutside) {
 TEST(Touch, AHexelThatCameOverTheAxisIsPushedBack) {
     float last_gap = 1.0f;
     for (double z = -1.2e-3; z < 0.45e-3; z += 1e-5) {
-        const Touch t = touch(wire(kLeft, kRight), kDt_s, hexel_at(Vec3(0, 0, z), Vec3(0, 0, 1)), kPoint_m);
+        const Touch t = touch({wire(kLeft, kRight), kDt_s}, hexel_at(Vec3(0, 0, z), Vec3(0, 0, 1)), kPoint_m);
         ASSERT_LT(glm::length(t.normal - Vec3f(0, 0, -1)), 1e-6f) << z;
         ASSERT_LT(t.gap_m, last_gap) << z;
         last_gap = t.gap_m;
@@ -69,14 +69,14 @@ TEST(Touch, AHexelThatCameOverTheAxisIsPushedBack) {
 
 // A hook lifting tissue from below touches its underside: up is out of the wire, and away from the tissue's free side.
 TEST(Touch, TheUndersideIsLifted) {
-    const Touch t = touch(wire(kLeft, kRight), kDt_s, hexel_at(Vec3(0, 0, 0.4e-3), Vec3(0, 0, -1)), kPoint_m);
+    const Touch t = touch({wire(kLeft, kRight), kDt_s}, hexel_at(Vec3(0, 0, 0.4e-3), Vec3(0, 0, -1)), kPoint_m);
     EXPECT_LT(glm::length(t.normal - Vec3f(0, 0, 1)), 1e-6f);
 }
 
 // The capsules stand at the end of the tick; the gap is that at its start, and closes at the tool's velocity.
 TEST(Touch, GapIsThatAtTheStartOfTheTick) {
     const Vec3 velocity(0, 0, -0.5);  // half a millimetre in the tick
-    const Touch t = touch(wire(kLeft, kRight, velocity), kDt_s, hexel_at(Vec3(0, 0, -1e-3), Vec3(0, 0, 1)), kPoint_m);
+    const Touch t = touch({wire(kLeft, kRight, velocity), kDt_s}, hexel_at(Vec3(0, 0, -1e-3), Vec3(0, 0, 1)), kPoint_m);
     EXPECT_NEAR(t.gap_m, 1.5e-3 - kWire_m - kPoint_m, 1e-9);
     EXPECT_LT(glm::length(t.tool_velocity_m_per_s - Vec3f(velocity)), 1e-6f);
 }
@@ -85,7 +85,7 @@ TEST(Touch, GapIsThatAtTheStartOfTheTick) {
 TEST(Touch, AFastWireCannotJumpOverAHexel) {
     const Vec3 velocity(0, 0, -4.0), down(0, 0, -3e-3);  // 4 mm in the tick: far beyond surgery
     const Touch t =
-        touch(wire(kLeft + down, kRight + down, velocity), kDt_s, hexel_at(Vec3(0.0), Vec3(0, 0, 1)), kPoint_m);
+        touch({wire(kLeft + down, kRight + down, velocity), kDt_s}, hexel_at(Vec3(0.0), Vec3(0, 0, 1)), kPoint_m);
     EXPECT_LT(glm::length(t.normal - Vec3f(0, 0, -1)), 1e-6f);
     const double at_end_m =
         static_cast<double>(t.gap_m) - glm::dot(Vec3(t.tool_velocity_m_per_s), Vec3(t.normal)) * kDt_s;
