@@ -9,8 +9,8 @@
 #define HWY_TARGET_INCLUDE "calot/electric/kernels_simd.cpp"
 #include <hwy/foreach_target.h>
 
-#include "calot/base/simd.h"
 #include <hwy/cache_control.h>
+#include "calot/base/simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace calot::electric {
