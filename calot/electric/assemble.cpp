@@ -70,8 +70,8 @@ void list_groups(Work& work) {
         if (alive == work.alive[n]) continue;
         work.alive[n] = alive;
         if (alive != 0) continue;
-        for (auto* values : {&fine.g[0], &fine.g[1], &fine.g[2], &fine.ground, &fine.weight, &fine.right, &fine.solution,
-                             &fine.scratch, &krylov.x, &krylov.p})
+        for (auto* values : {&fine.g[0], &fine.g[1], &fine.g[2], &fine.ground, &fine.weight, &fine.right,
+                             &fine.solution, &fine.scratch, &krylov.x, &krylov.p})
             std::fill_n(values->begin() + group.at, kGroup, 0.0f);
     }
     fine.groups.resize(count);

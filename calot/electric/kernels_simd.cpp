@@ -9,8 +9,8 @@
 #define HWY_TARGET_INCLUDE "calot/electric/kernels_simd.cpp"
 #include <hwy/foreach_target.h>
 
-#include "calot/base/simd.h"
 #include <hwy/cache_control.h>
+#include "calot/base/simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace calot::electric {
@@ -149,22 +149,17 @@ void gather(const Conductivity& tissue, std::int64_t first, std::int64_t count, 
 void faces(Level& level, const float* sigma, std::int64_t begin, std::int64_t end) {
     float* const g[3] = {level.g[0].data(), level.g[1].data(), level.g[2].data()};
     float* ground = level.ground.data();
-    const D d;
-    const std::int64_t row = level.row, plane = level.plane;
+    const std::int64_t step[3] = {1, level.row, level.plane};
     for (std::int64_t n = begin; n < end; ++n) {
         call_for(level, n, end, sigma, sigma + level.plane, g[0], g[1], g[2], ground);
         const std::int64_t at = level.groups[static_cast<std::size_t>(n)].at;
         for (std::int64_t i = at; i < at + kGroup; i += lanes()) {
             const V here = load(sigma + i);
-            auto mean = [&](V there) HWY_ATTR {
-                return hn::Div(hn::Mul(hn::Mul(all(2.0f), here), there), hn::Max(hn::Add(here, there), all(1e-30f)));
-            };
-            // At rest and inside one tissue, all three are the same; a division takes as long as all the rest.
-            const V along = load(sigma + i + 1), beside = load(sigma + i + row), behind = load(sigma + i + plane);
-            const V gx = mean(along);
-            store(gx, g[0] + i);
-            store(hn::AllTrue(d, hn::Eq(beside, along)) ? gx : mean(beside), g[1] + i);
-            store(hn::AllTrue(d, hn::Eq(behind, along)) ? gx : mean(behind), g[2] + i);
+            for (int axis = 0; axis < 3; ++axis) {
+                const V there = load(sigma + i + step[axis]);
+                const V twice = hn::Mul(hn::Mul(all(2.0f), here), there);
+                store(hn::Div(twice, hn::Max(hn::Add(here, there), all(1e-30f))), g[axis] + i);
+            }
             store(all(0.0f), ground + i);
         }
     }

@@ -18,7 +18,7 @@ namespace {
 struct SurfaceTurns {
     int first, count;
 };
-constexpr SurfaceTurns kSurfaceTurns{6, 5};
+constexpr SurfaceTurns kSurfaceTurns{5, 6};
 
 }  // namespace
 

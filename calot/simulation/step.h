@@ -27,11 +27,11 @@ inline constexpr std::array<const char*, kStages> kStageNames{"contact", "deform
 
 /// Where Exchange::gas comes from. What comes from one phyxel hangs on its first event there: `source`.
 struct GasPlaces {
-    std::vector<Vec3f> rest_m, world_m;      ///< of the sources
-    std::vector<std::int64_t> owner;         ///< hexels of the sources
-    std::vector<std::int64_t> phyxel;        ///< of the sources
-    std::vector<std::int32_t> source;        ///< of each event
-    std::vector<Vec3f> event_m;              ///< in the world, of each event
+    std::vector<Vec3f> rest_m, world_m;  ///< of the sources
+    std::vector<std::int64_t> owner;     ///< hexels of the sources
+    std::vector<std::int64_t> phyxel;    ///< of the sources
+    std::vector<std::int32_t> source;    ///< of each event
+    std::vector<Vec3f> event_m;          ///< in the world, of each event
 };
 
 /// Scratch of all rooms, with what they exchange and how long the stages of the last tick took.

@@ -28,7 +28,9 @@ void BlockSet::add_shifted(const BlockSet& other, std::int64_t shift) {
     const std::int64_t words = static_cast<std::int64_t>(words_.size());
     const std::int64_t whole = shift >> 6;  // rounds down, for negative shifts as well
     const auto bits = static_cast<unsigned>(shift & 63);
-    const auto from = [&](std::int64_t w) { return w >= 0 && w < words ? other.words_[static_cast<std::size_t>(w)] : 0; };
+    const auto from = [&](std::int64_t w) {
+        return w >= 0 && w < words ? other.words_[static_cast<std::size_t>(w)] : 0;
+    };
     const auto carry = [&](std::uint64_t below) { return bits != 0 ? below >> (64 - bits) : 0; };
     const std::int64_t first = std::max<std::int64_t>(0, whole), last = std::min(words - 1, whole + words);
     if (first > last) return;

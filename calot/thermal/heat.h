@@ -16,10 +16,10 @@
 // those that had not: the budget closes at every tick.
 //
 // A group of 16 cells is warm when any of its hexels has a temperature other than body temperature (tissue::kRest_K and
-// more away from it); its neighbours are active too, and those that Joule heat reaches. Everything that exchanges heat is
-// zero at body temperature, so that skipping the other groups changes no byte: heat cannot be lost at the cold front.
-// Blocks with active groups take turns. Which groups are active, and hence when each block has its turn, is a function of
-// State alone.
+// more away from it); its neighbours are active too, and those that Joule heat reaches. Everything that exchanges heat
+// is zero at body temperature, so that skipping the other groups changes no byte: heat cannot be lost at the cold
+// front. Blocks with active groups take turns. Which groups are active, and hence when each block has its turn, is a
+// function of State alone.
 
 #include <cstdint>
 #include <vector>
@@ -66,8 +66,8 @@ struct Work {
     Array<float> steam_kg_per_m3;      ///< [hexels.cells] boiled off in this tick; zero between ticks
     BitArray present;                  ///< hexels when the step began
     BlockSet populated;                ///< blocks that ever held tissue
-    BlockSet populated_groups, warm, active_groups, heated;  ///< groups that ever did, that are warm, active, were active
-                                                             ///< in the step before
+    BlockSet populated_groups, warm, active_groups, heated;  ///< groups that ever did, that are warm, active, were
+                                                             ///< active in the step before
     BlockSet late;                     ///< groups that Joule heat reaches since the step began
     Int3 joule_low{0}, joule_size{0};  ///< where it was looked for last
     std::vector<std::int32_t> turns;   ///< the active blocks of this step, ascending

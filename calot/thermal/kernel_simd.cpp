@@ -282,7 +282,8 @@ HWY_INLINE void hurt(const HeatStep& step, const PropertyLookup<mixed>& of, std:
     hn::Store(hn::IfThenElse(hurts, more, damage), d, step.damage + i);
 }
 
-/// Phases, temperature, peak and damage of what is hot, dry or may boil, in a group of its block. True when any lane lost water or took damage.
+/// Phases, temperature, peak and damage of what is hot, dry or may boil, in a group of its block. True when any lane
+/// lost water or took damage.
 template <bool mixed>
 HWY_INLINE bool settle(const HeatStep& step, const PropertyLookup<mixed>& of, const CellVector& at, unsigned group,
                        BlockMarks& marks, RunSums& sums, HeatSums& shared) {
@@ -357,8 +358,8 @@ HWY_NOINLINE void settle_groups(const HeatStep& step, Run& run, const GroupList&
             if (hn::AllFalse(D(), at.living)) continue;
             const unsigned own = place % kBlockGroups;
             changed |= (group.kind & kMixed) != 0
-                         ? settle(step, PropertyLookup<true>(step, group, i), at, own, marks, run.sums, shared)
-                         : settle(step, PropertyLookup<false>(step, group, i), at, own, marks, run.sums, shared);
+                           ? settle(step, PropertyLookup<true>(step, group, i), at, own, marks, run.sums, shared)
+                           : settle(step, PropertyLookup<false>(step, group, i), at, own, marks, run.sums, shared);
         }
         if (!changed) continue;
         marks.changed = true;
@@ -441,7 +442,8 @@ HWY_NOINLINE void step_groups(const HeatStep& shared, Run& run, const GroupList&
         ConductSums sums;
         for (int n = from; n < to; ++n) {
             const unsigned place = list.places[n];
-            if (n + kAhead < list.count) call_for<exposed, changed, mixed>(step, run.cell(step, list.places[n + kAhead]));
+            if (n + kAhead < list.count)
+                call_for<exposed, changed, mixed>(step, run.cell(step, list.places[n + kAhead]));
             const std::int64_t first = run.cell(step, place);
             const CellGroup& group = step.groups[first / kGroupCells];
             Outcome any{false, false};
