@@ -24,8 +24,8 @@ namespace calot::deformation {
 namespace {
 
 /// How far instruments and tissue may move towards each other before a frame's phyxels are listed anew: instruments are
-/// asked, tissue is taken to be slower than 0.75 m/s.
-constexpr float kInstrumentMargin_m = 2e-3f, kTissueMargin_m = 6e-3f;
+/// asked, tissue is taken to be slower than 1 m/s.
+constexpr float kInstrumentMargin_m = 2e-3f, kTissueMargin_m = 8e-3f;
 
 }  // namespace
 
