@@ -9,9 +9,12 @@
 namespace calot {
 
 /// Allocates on 64-byte boundaries (a cache line, the widest vector). Large arrays begin at different places within
-/// pages: a kernel reads some forty arrays at the same index, and caches have few places for lines that lie alike.
+/// pages: a kernel reads some forty arrays at the same index, and caches have few places for lines that lie alike. They
+/// share large pages where the system has these.
 void* allocate_apart(std::size_t bytes);
 void free_apart(void* p);
+/// How many large ones (from 16 KiB) this program has allocated so far. They do not come from operator new.
+std::size_t large_arrays_allocated();
 
 template <class T>
 struct AlignedAllocator {

@@ -21,9 +21,34 @@ std::int64_t task_of(std::int64_t count) {
     return count <= kOneTask ? kOneTask : kTaskGhosts;
 }
 
-float unless_below(float least, float x) {
-    return std::fabs(x) < least ? 0.0f : x;
+/// The components of a vector, and a lane of zero.
+using Four = float __attribute__((vector_size(16)));
+
+template <class T>
+Four load(const std::array<T*, 3>& field, std::int32_t i) {
+    return Four{field[0][i], field[1][i], field[2][i], 0.0f};
 }
+void store(const Four& value, const std::array<float*, 3>& field, std::int32_t i) {
+    field[0][i] = value[0];
+    field[1][i] = value[1];
+    field[2][i] = value[2];
+}
+Four unless_below(float least, const Four& x) {
+    const Four size = x < 0.0f ? -x : x;
+    return size < least ? Four{} : x;
+}
+
+template <class Fields>
+auto pointers(Fields& fields) {
+    return std::array{fields[0].data(), fields[1].data(), fields[2].data()};
+}
+
+/// Of n phyxels that a ghost mirrors each counts for so much.
+constexpr std::array<float, 13> kShare = [] {
+    std::array<float, 13> share{};
+    for (int n = 1; n < 13; ++n) share[static_cast<std::size_t>(n)] = 1.0f / static_cast<float>(n);
+    return share;
+}();
 
 }  // namespace
 
@@ -118,23 +143,17 @@ void move_ghosts(tissue::State& state, const Work& work) {
     const Images& images = work.images;
     const auto count = static_cast<std::int64_t>(images.ghost.size());
     parallel_for("deformation.ghosts", 0, count, task_of(count), [&](std::int64_t low, std::int64_t high) {
-        float *x = state.displacement_m[0].data(), *y = state.displacement_m[1].data(),
-              *z = state.displacement_m[2].data();
-        for (auto n = static_cast<std::size_t>(low); n < static_cast<std::size_t>(high); ++n) {
-            Vec3f face(work.face_m[0][n], work.face_m[1][n], work.face_m[2][n]), mean(0.0f);
-            const auto begin = static_cast<std::size_t>(images.start[n]),
-                       end = static_cast<std::size_t>(images.start[n + 1]);
-            for (std::size_t k = begin; k < end; ++k) {
-                const std::int32_t p = images.mirrored[k];
-                mean += Vec3f(x[p], y[p], z[p]);
-            }
-            if (end > begin) face *= 2.0f;
-            if (end > begin + 1) mean *= 1.0f / static_cast<float>(end - begin);
-            const std::int32_t g = images.ghost[n];
-            x[g] = face.x - mean.x;
-            y[g] = face.y - mean.y;
-            z[g] = face.z - mean.z;
-            for (auto& velocity : state.velocity_m_per_s) velocity[static_cast<std::size_t>(g)] = 0.0f;
+        const auto displacement = pointers(state.displacement_m), velocity = pointers(state.velocity_m_per_s);
+        const auto faces = pointers(work.face_m);
+        const std::int32_t *start = images.start.data(), *mirrored = images.mirrored.data(),
+                           *ghosts = images.ghost.data();
+        for (auto n = static_cast<std::int32_t>(low); n < high; ++n) {
+            const std::int32_t begin = start[n], end = start[n + 1];
+            Four face = load(faces, n), sum{};
+            for (std::int32_t k = begin; k < end; ++k) sum += load(displacement, mirrored[k]);
+            if (end > begin) face += face;
+            store(face - sum * kShare[static_cast<std::size_t>(end - begin)], displacement, ghosts[n]);
+            store(Four{}, velocity, ghosts[n]);
         }
     });
 }
@@ -143,22 +162,16 @@ void return_ghost_impulses(tissue::State& state, const Work& work, float decay) 
     const Images& images = work.images;
     const auto count = static_cast<std::int64_t>(images.phyxel.size());
     parallel_for("deformation.impulses", 0, count, task_of(count), [&](std::int64_t low, std::int64_t high) {
-        float *x = state.velocity_m_per_s[0].data(), *y = state.velocity_m_per_s[1].data(),
-              *z = state.velocity_m_per_s[2].data();
-        for (auto n = static_cast<std::size_t>(low); n < static_cast<std::size_t>(high); ++n) {
-            Vec3f impulse_Ns(0.0f);
-            for (auto k = static_cast<std::size_t>(images.first[n]); k < static_cast<std::size_t>(images.first[n + 1]);
-                 ++k) {
-                const std::int32_t g = images.by[k];
-                impulse_Ns += images.share[k] * Vec3f(x[g], y[g], z[g]);
-            }
-            const auto p = static_cast<std::size_t>(images.phyxel[n]);
-            const Vec3f more = -decay * work.inverse_mass_per_kg[p] * impulse_Ns;
-            for (std::size_t r = 0; r < 3; ++r) {
-                float &v = state.velocity_m_per_s[r][p], &u = state.displacement_m[r][p];
-                v = unless_below(kRest_m_per_s, v + more[static_cast<int>(r)]);
-                u = unless_below(kNowhere_m, u + work.substep_s * more[static_cast<int>(r)]);
-            }
+        const auto displacement = pointers(state.displacement_m), velocity = pointers(state.velocity_m_per_s);
+        const float *inverse_mass = work.inverse_mass_per_kg.data(), *share = images.share.data(), dt = work.substep_s;
+        const std::int32_t *first = images.first.data(), *by = images.by.data(), *phyxels = images.phyxel.data();
+        for (std::int64_t n = low; n < high; ++n) {
+            Four impulse_Ns{};
+            for (std::int32_t k = first[n]; k < first[n + 1]; ++k) impulse_Ns += share[k] * load(velocity, by[k]);
+            const std::int32_t p = phyxels[n];
+            const Four more = (-decay * inverse_mass[p]) * impulse_Ns;
+            store(unless_below(kRest_m_per_s, load(velocity, p) + more), velocity, p);
+            store(unless_below(kNowhere_m, load(displacement, p) + dt * more), displacement, p);
         }
     });
 }

@@ -208,6 +208,8 @@ void store_rest(const Model& model, const State& state, Work& work, std::int64_t
     work.hourglass[cell] = static_cast<float>(rest.hourglass_N_per_m);
     work.lame_mu_Pa[cell] = static_cast<float>(rest.mu_Pa);
     work.lame_lambda_Pa[cell] = static_cast<float>(rest.lambda_Pa);
+    work.weighing_mass_kg[cell] = static_cast<float>(rest.mass_kg);
+    work.moving_mass_kg[cell] = static_cast<float>(rest.moving_mass_kg);
     store_links(model, state, work, phyxel);
     refresh_pull(model, state, work, phyxel);
     if (model.phyxel_ghost.test(phyxel)) refresh_mirror(model, state, work, phyxel);
@@ -218,13 +220,9 @@ void store_rest(const Model& model, const State& state, Work& work, std::int64_t
     }
 }
 
-/// Stores mass, which depends on the neighbours as well.
+/// Stores what makes a step stable, which depends on the neighbours as well.
 void store_mass(const Model& model, const State& state, Work& work, std::int64_t phyxel) {
     const auto cell = static_cast<std::size_t>(phyxel);
-    PhyxelRest rest;
-    if (state.phyxel_present.test(phyxel)) fill_from_hexels(model, work, phyxel, rest);
-    work.weighing_mass_kg[cell] = static_cast<float>(rest.mass_kg);
-    work.moving_mass_kg[cell] = static_cast<float>(rest.moving_mass_kg);
     work.stable_mass_kg[cell] = static_cast<float>(stable_mass_kg(model, state, work, phyxel));
     set_mass(work, phyxel, work.raise[cell]);
 }

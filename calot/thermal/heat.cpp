@@ -115,7 +115,7 @@ void look_at_presence(const tissue::Model& model, const tissue::State& state, Wo
 
 /// How much of a step is done before each tick, of 48: less in those that are long for the electric field, for what the
 /// step begins with, or for the surface.
-constexpr std::array<std::uint64_t, 9> kDoneBefore{0, 4, 11, 22, 29, 33, 38, 42, 48};
+constexpr std::array<std::uint64_t, 9> kDoneBefore{0, 3, 11, 17, 24, 30, 35, 40, 48};
 
 /// Shares the active blocks out to the ticks of the step. Only the groups of `counted` count as work.
 void plan_turns(const tissue::Model& model, Work& work, const BlockSet& counted) {
