@@ -60,8 +60,7 @@ class Slabs {
     }
     static Slab* make(std::size_t bytes) {
         // Begins with a large page: what is before that and what is left behind is given back.
-        void* memory =
-            ::mmap(nullptr, bytes + kLargePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        void* memory = ::mmap(nullptr, bytes + kLargePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         if (memory == MAP_FAILED) throw std::bad_alloc();
         auto* begin = static_cast<char*>(memory);
         const std::size_t before = (kLargePage - reinterpret_cast<std::uintptr_t>(begin) % kLargePage) % kLargePage;
@@ -87,7 +86,7 @@ Origin take(std::size_t bytes) {
 #if defined(__linux__)
     if (bytes >= kLarge) return slabs().take(bytes);
 #endif
-    return {static_cast<char*>(::operator new(bytes, std::align_val_t{kLine})), nullptr};
+    return {static_cast<char*>(::operator new (bytes, std::align_val_t{kLine})), nullptr};
 }
 
 }  // namespace
@@ -108,7 +107,7 @@ void free_apart(void* p) {
 #if defined(__linux__)
     if (origin.slab != nullptr) return slabs().give_back(origin.slab);
 #endif
-    ::operator delete(origin.block, std::align_val_t{kLine});
+    ::operator delete (origin.block, std::align_val_t{kLine});
 }
 
 std::size_t large_arrays_allocated() {
