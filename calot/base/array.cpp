@@ -26,6 +26,7 @@ struct Slab {
 struct Origin {
     char* block = nullptr;
     Slab* slab = nullptr;  ///< null: the heap
+    std::size_t bytes = 0;
 };
 static_assert(sizeof(Origin) <= kLine);
 
@@ -40,12 +41,16 @@ class Slabs {
   public:
     Origin take(std::size_t bytes) {
         const std::lock_guard lock(mutex_);
+        bytes = (bytes + kLine - 1) / kLine * kLine;
         if (bytes > kSlab / 4) return cut(*make((bytes + kLargePage - 1) / kLargePage * kLargePage), bytes);
         if (current_ == nullptr || current_->used + bytes > current_->bytes) current_ = make(kSlab);
         return cut(*current_, bytes);
     }
-    void give_back(Slab* slab) {
+    void give_back(const Origin& origin) {
         const std::lock_guard lock(mutex_);
+        Slab* slab = origin.slab;
+        // What was taken last is taken again.
+        if (origin.block + origin.bytes == slab->begin + slab->used) slab->used -= origin.bytes;
         if (--slab->arrays > 0) return;
         if (slab == current_) current_ = nullptr;
         ::munmap(slab->begin, slab->bytes);
@@ -55,12 +60,12 @@ class Slabs {
   private:
     static Origin cut(Slab& slab, std::size_t bytes) {
         char* block = slab.begin + slab.used;
-        slab.used += (bytes + kLine - 1) / kLine * kLine;
+        slab.used += bytes;
         ++slab.arrays;
         // Now, not in the tick that uses a reserve for the first time: the system may take milliseconds to find a large
         // page.
         for (std::size_t k = 0; k < bytes; k += kPage) static_cast<volatile char*>(block)[k] = 0;
-        return {block, &slab};
+        return {block, &slab, bytes};
     }
     static Slab* make(std::size_t bytes) {
         // Begins with a large page: what is before that and what is left behind is given back.
@@ -90,7 +95,7 @@ Origin take(std::size_t bytes) {
 #if defined(__linux__)
     if (bytes >= kLarge) return slabs().take(bytes);
 #endif
-    return {static_cast<char*>(::operator new (bytes, std::align_val_t{kLine})), nullptr};
+    return {static_cast<char*>(::operator new (bytes, std::align_val_t{kLine})), nullptr, bytes};
 }
 
 }  // namespace
@@ -109,7 +114,7 @@ void free_apart(void* p) {
     Origin origin;
     std::memcpy(&origin, static_cast<char*>(p) - kLine, sizeof(origin));
 #if defined(__linux__)
-    if (origin.slab != nullptr) return slabs().give_back(origin.slab);
+    if (origin.slab != nullptr) return slabs().give_back(origin);
 #endif
     ::operator delete (origin.block, std::align_val_t{kLine});
 }
