@@ -4,7 +4,7 @@
 #include <mutex>
 #include <new>
 
-#if defined(__linux__)
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #include <sys/mman.h>
 #endif
 
@@ -30,7 +30,7 @@ struct Origin {
 };
 static_assert(sizeof(Origin) <= kLine);
 
-#if defined(__linux__)
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 
 /// Large pages where the system has them: a kernel that reads forty arrays at once misses less often where they are.
 constexpr std::size_t kPage = 4096;
@@ -92,7 +92,7 @@ Slabs& slabs() {
 #endif
 
 Origin take(std::size_t bytes) {
-#if defined(__linux__)
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
     if (bytes >= kLarge) return slabs().take(bytes);
 #endif
     return {static_cast<char*>(::operator new (bytes, std::align_val_t{kLine})), nullptr, bytes};
@@ -113,7 +113,7 @@ void free_apart(void* p) {
     if (p == nullptr) return;
     Origin origin;
     std::memcpy(&origin, static_cast<char*>(p) - kLine, sizeof(origin));
-#if defined(__linux__)
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
     if (origin.slab != nullptr) return slabs().give_back(origin);
 #endif
     ::operator delete (origin.block, std::align_val_t{kLine});
