@@ -414,10 +414,7 @@ HWY_INLINE Outcome step_vector(const HeatStep& step, const CellGroup& group, std
 template <bool exposed, bool changed, bool mixed>
 HWY_INLINE void call_for(const HeatStep& step, std::int64_t cell) {
     hwy::Prefetch(step.temperature_K + cell);
-    for (const std::int64_t side : {-step.furthest, step.furthest}) {  // across two lines
-        hwy::Prefetch(step.temperature_K + cell + side);
-        hwy::Prefetch(step.temperature_K + cell + side + kGroupCells - 1);
-    }
+    hwy::Prefetch(step.temperature_K + cell + step.furthest);
     hwy::Prefetch(step.enthalpy_J_per_m3 + cell);
     hwy::Prefetch(step.next_temperature_K + cell);
     if constexpr (exposed) {
