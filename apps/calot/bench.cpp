@@ -70,12 +70,12 @@ void print_kernels(const BenchResults& results) {
 
 void print_ticks(const BenchResults& results) {
     if (results.tick.empty()) return;
-    fmt::print("\n{:<40}{:>9}{:>11}{:>9}{:>10}{:>10}{:>10}{:>10}{:>6}\n", "ticks of 1 ms, us", "phyxels", "hexels",
-               "threads", "median", "99 %", "99.9 %", "longest", "late");
+    fmt::print("\n{:<40}{:>9}{:>11}{:>9}{:>10}{:>10}{:>10}{:>10}{:>6}{:>16}\n", "ticks of 1 ms, us", "phyxels",
+               "hexels", "threads", "median", "99 %", "99.9 %", "longest", "late", "99 % of least");
     for (const TickResult& t : results.tick)
-        fmt::print("{:<40}{:>9}{:>11}{:>9}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>6}\n", t.title,
+        fmt::print("{:<40}{:>9}{:>11}{:>9}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>6}{:>16}\n", t.title,
                    grouped_number(t.phyxels), grouped_number(t.hexels), t.threads, t.median_us, t.p99_us, t.p999_us,
-                   t.max_us, t.late);
+                   t.max_us, t.late, t.passes > 1 ? fmt::format("{:.1f}", t.least.p99) : "");
     for (const TickResult& t : results.tick)
         if (!t.worst.empty())
             fmt::print("  longest of {}: {:.0f} us at {:.3f} s: {}\n", t.title, t.worst.front().us,
@@ -168,6 +168,9 @@ int bench(const BenchOptions& options) {
         options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     plan.quick = options.quick;
     plan.simulated_s = options.seconds > 0.0 ? options.seconds : options.quick ? 1.8 : 30.0;
+    plan.passes = options.passes > 0                                               ? options.passes
+                  : options.quick || options.backend.kind != gpu::BackendKind::cpu ? 1
+                                                                                   : 3;
 
     if (options.backend.kind != gpu::BackendKind::cpu) {
         // Scenes of all sizes are measured: `auto` asks for a GPU, not for a size.

@@ -41,23 +41,27 @@ Json tick_json(const TickResult& tick) {
     histogram["edges_us"] = tick.bin_edges_us;
     for (std::size_t k = 0; k < simulation::kStages; ++k) histogram[simulation::kStageNames[k]] = tick.histogram[k];
     histogram["tick"] = tick.histogram[simulation::kStages];
-    return {{"scene", tick.scene},
-            {"phyxels", tick.phyxels},
-            {"hexels", tick.hexels},
-            {"threads", tick.threads},
-            {"simulated_s", tick.simulated_s},
-            {"median_us", rounded(tick.median_us)},
-            {"p99_us", rounded(tick.p99_us)},
-            {"p999_us", rounded(tick.p999_us)},
-            {"max_us", rounded(tick.max_us)},
-            {"late", tick.late},
-            {"stages_us", stages_json(tick.stages_us)},
-            {"burning", {{"ticks", tick.burning_ticks}, {"p99_us", rounded(tick.burning_p99_us)}}},
-            {"removed", tick.removed},
-            {"severed", tick.severed},
-            {"most_removed_in_a_second", tick.most_removed_in_a_second},
-            {"worst", worst},
-            {"histogram", histogram}};
+    return {
+        {"scene", tick.scene},
+        {"phyxels", tick.phyxels},
+        {"hexels", tick.hexels},
+        {"threads", tick.threads},
+        {"simulated_s", tick.simulated_s},
+        {"median_us", rounded(tick.median_us)},
+        {"p99_us", rounded(tick.p99_us)},
+        {"p999_us", rounded(tick.p999_us)},
+        {"max_us", rounded(tick.max_us)},
+        {"late", tick.late},
+        {"passes", tick.passes},
+        {"least_us",
+         {{"median", rounded(tick.least.median)}, {"p99", rounded(tick.least.p99)}, {"max", rounded(tick.least.max)}}},
+        {"stages_us", stages_json(tick.stages_us)},
+        {"burning", {{"ticks", tick.burning_ticks}, {"p99_us", rounded(tick.burning_p99_us)}}},
+        {"removed", tick.removed},
+        {"severed", tick.severed},
+        {"most_removed_in_a_second", tick.most_removed_in_a_second},
+        {"worst", worst},
+        {"histogram", histogram}};
 }
 
 Json machine_json(const Machine& machine) {

@@ -15,6 +15,7 @@ namespace calot::app {
 struct BenchPlan {
     int threads = 1;          ///< the most that are used
     double simulated_s = 30;  ///< of each scene
+    int passes = 1;           ///< over each scene
     bool quick = false;
     std::optional<gpu::DeviceInfo> device;  ///< ticks and kernels run there
 

@@ -104,6 +104,11 @@ void TickWatch::finish(const simulation::Simulation& run, TickResult& result) co
     result.p99_us = quantile(us, 0.99);
     result.p999_us = quantile(us, 0.999);
     result.max_us = quantile(us, 1.0);
+    const std::vector<double> least = as_doubles(least_us_.empty() ? us_ : least_us_);
+    for (const double time : least) result.least.mean += time / static_cast<double>(std::max<std::size_t>(1, ticks));
+    result.least.median = quantile(least, 0.5);
+    result.least.p99 = quantile(least, 0.99);
+    result.least.max = quantile(least, 1.0);
     result.removed = run.figures().hexels_burnt + run.figures().hexels_fallen;
     result.severed = run.figures().links_severed;
     std::vector<double> burning;

@@ -49,7 +49,7 @@ struct OutputChoice {
 struct SimulateOptions {
     SceneChoice scene;
     OutputChoice output;
-    std::string task;  ///< empty: not scored
+    std::string task;      ///< empty: not scored
     bool session = false;  ///< stored as a session instead of written to a directory
     std::string trainee, data;
     gpu::BackendWish backend;
@@ -86,7 +86,7 @@ struct ViewOptions {
     std::string pictures = ".";
     int width = 1280, height = 800;
     bool fullscreen = false;
-    int threads = 0;             ///< for the physics; 0: as fits the machine
+    int threads = 0;            ///< for the physics; 0: as fits the machine
     std::string data, trainee;  ///< of the sessions, see SessionOptions
     std::string haptics;        ///< haptic device for the right hand; empty: none
     double haptics_gain = 1.0;  ///< of its force
@@ -100,6 +100,7 @@ struct BenchOptions {
     std::string compare;              ///< an earlier JSON file
     int threads = 0;                  ///< 0: all cores
     double seconds = 0.0;             ///< simulated, of each scene; 0: 30 s, quick 1.8 s
+    int passes = 0;                   ///< over each scene; 0: 3, quick 1
     bool quick = false;
     bool real_time = false;
     ProgressKind progress = ProgressKind::automatic;
@@ -123,7 +124,7 @@ struct SessionOptions {
     std::string data;     ///< folder of the store; empty: the user's
     std::optional<std::int64_t> continues;
     double from_s = 0.0;
-    int frames = 60;  ///< of the debrief; -1: no debrief
+    int frames = 60;           ///< of the debrief; -1: no debrief
     gpu::BackendWish backend;  ///< of a session that starts anew
     int threads = 0;
     ProgressKind progress = ProgressKind::automatic;
@@ -179,10 +180,10 @@ struct HapticsOptions {
 int try_haptics(const HapticsOptions& options);
 
 struct ValidateOptions {
-    std::string suite;                ///< empty: all
-    std::string json, report;         ///< file and directory to write, empty: none
-    std::string scenes;               ///< of the experiments, empty: looked for
-    std::vector<std::string> spoil;   ///< NAME=FACTOR
+    std::string suite;               ///< empty: all
+    std::string json, report;        ///< file and directory to write, empty: none
+    std::string scenes;              ///< of the experiments, empty: looked for
+    std::vector<std::string> spoil;  ///< NAME=FACTOR
     bool quick = false, force = false;
     ProgressKind progress = ProgressKind::automatic;
     int threads = 0;  ///< 0: all cores

@@ -148,6 +148,11 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
     command.add_option("--seconds", options.seconds, "Simulated time of each scene")
         ->type_name("S")
         ->check(seconds_between(0.1, 3600.0));
+    command
+        .add_option("--passes", options.passes,
+                    "Run each scene so often: what a tick takes at least is the program's, the rest the machine's")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100));
     command.add_flag("--quick", options.quick, "A short look: fewer sizes, fewer repetitions");
     command.add_flag("--real-time", options.real_time,
                      "Ask for a real-time scheduling policy and lock memory, as a program with a haptic device does");

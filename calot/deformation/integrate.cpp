@@ -40,6 +40,11 @@ void run_both(const KernelView& view, Work& work) {
     const Groups groups(work.groups);
     const auto count = static_cast<std::int64_t>(groups.size());
     const std::int64_t chunks = std::max<std::int64_t>(1, count / kOneTask), chunk = (count + chunks - 1) / chunks;
+    if (chunks == 1) {  // what fits into the caches gains nothing by one pass
+        sweep_gradients(view, groups);
+        sweep_motion(view, groups);
+        return;
+    }
     auto range = [&](std::int64_t low) { return GroupRange{low, std::min(low + chunk, count)}; };
     parallel_for("deformation.both", 0, count, chunk, [&](std::int64_t low, std::int64_t) {
         const GroupRange gradients = range(low);
