@@ -133,6 +133,7 @@ KernelView KernelView::make(const Model& model, State& state, Work& work) {
     for (std::size_t e = 0; e < 6; ++e) view.moment_inverse[e] = work.moment_inverse[e].data();
     view.stiffening = work.stiffening.data();
     view.strained = work.strained.data();
+    view.fast = work.fast.data();
     view.first_group = work.groups.data();
     const double stretch = model.deformation.tear_stretch;
     // Uniaxial stretch of incompressible tissue: lambda along, 1 / sqrt(lambda) across.

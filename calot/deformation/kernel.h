@@ -30,6 +30,7 @@ struct KernelView {
     std::array<float*, 9> gradient{}, moment_stress{};
     float* stiffening = nullptr;
     std::uint8_t* strained = nullptr;  ///< by group
+    std::uint8_t* fast = nullptr;  ///< by group, set where a phyxel is faster than kFast_m_per_s
     const Group* first_group = nullptr;
     float most_squared_stretch = 0.0f;  ///< |F|^2 beyond which tissue tears
     std::array<const float*, 6> moment_inverse{};
@@ -70,6 +71,9 @@ inline constexpr float kStiffer = 0.5f;
 /// times as long over them.
 inline constexpr float kRest_m_per_s = 1e-12f;
 inline constexpr float kNowhere_m = 1e-11f;
+
+/// Whoever relies on where tissue was some ticks ago is told where it is faster (Work::fast).
+inline constexpr float kFast_m_per_s = 1.0f;
 
 using Groups = std::span<Group>;
 

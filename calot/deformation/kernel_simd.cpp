@@ -356,6 +356,7 @@ HWY_INLINE void motion_of(const KernelView& k, const Place& at) {
     const Lanes inverse_mass = load(k.inverse_mass_per_kg + i), gravity_share = load(k.gravity_share + i);
     const Mask present = at.mask(at.group.present), ghost = at.mask(at.group.ghost);
     const Lanes dt = all(k.substep_s);
+    Lanes speed2 = all(0.0f);
     for (int r = 0; r < 3; ++r) {
         const auto row = static_cast<std::size_t>(r);
         const Lanes impulse = all(k.substep_s) * (spacing * sum[r] + load(k.own_force_N[row] + i));
@@ -364,11 +365,14 @@ HWY_INLINE void motion_of(const KernelView& k, const Place& at) {
         const Lanes velocity = decay * (load(v) + inverse_mass * impulse + gravity);
         // What is no number must stay, for check() to find.
         const Mask moving = hn::AndNot(hn::Lt(hn::Abs(velocity.v), all(kRest_m_per_s).v), present);
+        speed2 = speed2 + velocity * velocity;
         store(where(moving, velocity) + where(ghost, impulse), v);
         float* u = k.displacement_m[row] + i;
         const Lanes moved = load(u) + where(moving, dt * velocity);
         store(where(hn::Not(hn::Lt(hn::Abs(moved.v), all(kNowhere_m).v)), moved), u);
     }
+    const Mask fast = hn::And(hn::Gt(speed2.v, all(kFast_m_per_s * kFast_m_per_s).v), present);
+    if (HWY_UNLIKELY(!hn::AllFalse(D(), fast))) k.fast[&at.group - k.first_group] = 1;
 }
 
 void motion(const KernelView& k, Groups groups) {

@@ -29,6 +29,7 @@ Work make_work(const tissue::Model& model, const tissue::State& state) {
     work.volume_share = volume_shares(model);
     work.groups = make_groups(model, state);
     work.strained.assign(work.groups.size(), 0);
+    work.fast.assign(work.groups.size(), 0);
     work.touched_groups.reserve(work.groups.size());
     work.near = make_near_work(model, work);
     for (std::size_t r = 0; r < 3; ++r) {

@@ -89,6 +89,7 @@ struct Work {
 
     std::vector<Group> groups;                 ///< hold all phyxels and ghosts, do not overlap, ascending
     std::vector<std::uint8_t> strained;        ///< [groups] has an overstretched or stiffened cell
+    std::vector<std::uint8_t> fast;            ///< [groups] had a fast phyxel since the search for near hexels looked (near.cpp)
     std::vector<std::int32_t> touched_groups;  ///< scratch
     NearWork near;                             ///< tables and lists of find_near
     std::array<Array<float>, 3> rest_m;        ///< [phyxels.cells] centres at rest
