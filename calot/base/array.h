@@ -33,6 +33,13 @@ struct AlignedAllocator {
 template <class T>
 using Array = std::vector<T, AlignedAllocator<T>>;
 
+/// resize() that leaves room for a quarter more when it has to allocate, for what grows by little and little.
+template <class Vector>
+void resize_with_room(Vector& values, std::size_t size) {
+    if (values.capacity() < size) values.reserve(size + size / 4);
+    values.resize(size);
+}
+
 /// A bit per cell. The words are padded by one, so that `bits` may read past the last cell.
 class BitArray {
   public:

@@ -28,6 +28,9 @@ class TripleBuffer {
     T& front() { return slot_[front_]; }
     const T& front() const { return slot_[front_]; }
 
+    /// All slots, for whoever prepares them before both threads begin.
+    std::array<T, 3>& slots() { return slot_; }
+
     /// The same by copy: from the writing thread ...
     void put(const T& value) {
         back() = value;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cassert>
 
+#include "calot/base/array.h"
 #include "calot/base/parallel.h"
 #include "calot/surface/block_grid.h"
 #include "calot/surface/block_points.h"
@@ -298,10 +299,10 @@ void Surface::Impl::gather_into(Mesh& mesh, std::vector<std::int64_t>& mesh_owne
         vertices += grid.edges(block).vertices;
         triangles += grid.edges(block).triangles;
     }
-    mesh.position_m.resize(vertices);
-    mesh.normal.resize(vertices);
-    mesh_owner.resize(vertices);
-    mesh.index.resize(3 * std::size_t{triangles});
+    resize_with_room(mesh.position_m, vertices);
+    resize_with_room(mesh.normal, vertices);
+    resize_with_room(mesh_owner, vertices);
+    resize_with_room(mesh.index, 3 * std::size_t{triangles});
     std::uint32_t* index = mesh.index.data();
     for (std::int64_t block = 0; block < grid.count(); ++block) {
         const BlockEdges& edges = grid.edges(block);

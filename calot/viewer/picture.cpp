@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "calot/base/array.h"
 #include "calot/render/scene_view.h"
 
 namespace calot::viewer {
@@ -67,7 +68,7 @@ void Picture::begin(const simulation::Simulation& run, const tissue::Input& inpu
         moment.pose.copy(run.state(), run.work().deformation);
     }
     moment.surface_version = view.tissue_index_version = surface.version();
-    view.tissue.resize(moment.owner.size());
+    resize_with_room(view.tissue, moment.owner.size());
     done_ = 0;
     view.camera = camera_;
     view.time_s = run.time_s();

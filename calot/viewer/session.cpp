@@ -49,7 +49,8 @@ Session::Session(std::unique_ptr<simulation::Simulation> run, SessionOptions opt
     first.right = core_.theatre().right_start;
     first.left = core_.theatre().left_start;
     controls_.publish();
-    core_.fill(snapshots_.back());  // something to draw from the first moment on
+    // Something to draw from the first moment on, and memory for what comes.
+    for (Snapshot& snapshot : snapshots_.slots()) core_.fill(snapshot);
     snapshots_.publish();
 }
 
