@@ -21,10 +21,10 @@ std::int64_t bytes_of(const BitArray& bits) {
     return bytes_of(bits.words());
 }
 
-/// In use on the heap, large blocks included.
+/// In use on the heap, large blocks included, and by large arrays beside it.
 std::int64_t heap_bytes() {
     const struct mallinfo2 info = ::mallinfo2();
-    return static_cast<std::int64_t>(info.uordblks + info.hblkhd);
+    return static_cast<std::int64_t>(info.uordblks + info.hblkhd + large_array_bytes());
 }
 
 /// What `make` leaves on the heap as long as its result lives.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLine = 64, kLinesOfPage = 64;
 constexpr std::size_t kLarge = 16384;
-std::atomic<std::size_t> large_arrays{0};
+std::atomic<std::size_t> large_arrays{0}, large_bytes{0};
 
 /// A stretch of memory that arrays are cut from, one after the other. It is given back when the last of them is.
 struct Slab {
@@ -104,6 +104,7 @@ void* allocate_apart(std::size_t bytes) {
     // Steps of 11 lines visit every line of a page before any comes again.
     const std::size_t lines = bytes < kLarge ? 0 : 11 * large_arrays.fetch_add(1) % kLinesOfPage;
     const Origin origin = take(bytes + kLine * (1 + lines));
+    if (origin.slab != nullptr) large_bytes += origin.bytes;
     char* array = origin.block + kLine * (1 + lines);
     std::memcpy(array - kLine, &origin, sizeof(origin));
     return array;
@@ -114,13 +115,19 @@ void free_apart(void* p) {
     Origin origin;
     std::memcpy(&origin, static_cast<char*>(p) - kLine, sizeof(origin));
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
-    if (origin.slab != nullptr) return slabs().give_back(origin);
+    if (origin.slab != nullptr) {
+        large_bytes -= origin.bytes;
+        return slabs().give_back(origin);
+    }
 #endif
     ::operator delete (origin.block, std::align_val_t{kLine});
 }
 
 std::size_t large_arrays_allocated() {
     return large_arrays;
+}
+std::size_t large_array_bytes() {
+    return large_bytes;
 }
 
 }  // namespace calot

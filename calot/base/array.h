@@ -15,6 +15,8 @@ void* allocate_apart(std::size_t bytes);
 void free_apart(void* p);
 /// How many large ones (from 16 KiB) this program has allocated so far. They do not come from operator new.
 std::size_t large_arrays_allocated();
+/// Bytes of those that are not in the heap and live.
+std::size_t large_array_bytes();
 
 template <class T>
 struct AlignedAllocator {

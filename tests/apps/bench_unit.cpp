@@ -137,6 +137,9 @@ TEST(Inspect, MemoryStaysWithinItsBounds) {
     const Json memory = Json::parse(outcome.output)["memory_bytes"];
     EXPECT_LT(memory["per_hexel_cell"], 64.0);  // the bounds of the specification
     EXPECT_LT(memory["per_phyxel_cell"], 400.0);
+    // Nothing is left out: a cell of hexels has six numbers of four bytes, one of phyxels some fifty.
+    EXPECT_GT(memory["per_hexel_cell"], 24.0);
+    EXPECT_GT(memory["per_phyxel_cell"], 200.0);
     std::int64_t work = 0;
     for (const Json& room : memory["work"]) work += room.get<std::int64_t>();
     EXPECT_EQ(memory["all"].get<std::int64_t>(),

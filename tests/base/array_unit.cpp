@@ -37,6 +37,16 @@ TEST(Array, LargeOnesBeginAtDifferentPlacesWithinPages) {
     EXPECT_GT(std::unique(places.begin(), places.end()) - places.begin(), 20);
 }
 
+TEST(Array, LargeOnesAreCountedWhileTheyLive) {
+    const std::size_t before = large_array_bytes();
+    {
+        const Array<float> large(1000000);
+        EXPECT_GE(large_array_bytes() - before, 4000000u);
+        EXPECT_LT(large_array_bytes() - before, 4100000u);
+    }
+    EXPECT_EQ(large_array_bytes(), before);
+}
+
 TEST(Array, ComesFromSeveralThreads) {
     std::vector<std::thread> threads;
     for (std::uint32_t t = 0; t < 4; ++t)
