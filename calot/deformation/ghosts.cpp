@@ -1,10 +1,10 @@
 #include "calot/deformation/ghosts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "calot/base/parallel.h"
+#include "calot/deformation/carriers.h"
 #include "calot/deformation/kernel.h"
 #include "calot/deformation/links.h"
 
@@ -22,8 +22,6 @@ std::int64_t task_of(std::int64_t count) {
 }
 
 /// The components of a vector, and a lane of zero.
-using Four = float __attribute__((vector_size(16)));
-
 template <class T>
 Four load(const std::array<T*, 3>& field, std::int32_t i) {
     return Four{field[0][i], field[1][i], field[2][i], 0.0f};
